@@ -1,0 +1,1 @@
+"""Named reference problems, each a function of its physical parameters."""
