@@ -1,0 +1,54 @@
+"""The undisturbed state of a finite-element model: the start of the wished-in-place pile."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from handoff.fe_state_file import FEState
+from handoff.tensor_arrays import six_vectors, tensors_of
+from install_mpm.constitutive import dispatch
+from install_mpm.conventions import Kinematics, vertical_axis
+from install_mpm.ground import Ground, geostatic_stress
+from install_mpm.pile import tangent_of
+
+VERTICAL = vertical_axis(Kinematics.PLANE_STRAIN)
+
+
+def geostatic_state(
+    ground: Ground,
+    integration_positions: np.ndarray,
+    interface_positions: np.ndarray,
+    interface_normals: np.ndarray,
+) -> FEState:
+    """Return the undisturbed state at integration points (n_q, 2) and interface points (n_i, 2).
+
+    The interface carries the traction that the geostatic stress exerts on its plane.
+    """
+    height = integration_positions[:, VERTICAL]
+    stress = geostatic_stress(ground, height, VERTICAL)
+    material = np.zeros(len(height), dtype=np.int64)
+    return FEState(
+        cauchy_stress=stress,
+        elastic_strain=elastic_strain_of(ground, material, stress),
+        state_variables=dispatch.initial_state(ground.soil, np.maximum(-height, 0.0)),
+        material=material,
+        interface_traction=geostatic_traction(ground, interface_positions, interface_normals),
+        pile_displacement=np.zeros(2),
+    )
+
+
+def geostatic_traction(ground: Ground, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """Return the traction (n, 2) on the soil, (tangential, normal), of the geostatic stress."""
+    stress = geostatic_stress(ground, positions[:, VERTICAL], VERTICAL)[:, :2, :2]
+    traction = np.einsum("nij,nj->ni", stress, normals)
+    tangents = tangent_of(normals)
+    return np.column_stack([np.einsum("ni,ni->n", traction, axis) for axis in (tangents, normals)])
+
+
+def elastic_strain_of(ground: Ground, material: np.ndarray, stress: np.ndarray) -> np.ndarray:
+    """Return the small elastic strain (n, 3, 3) that carries the Cauchy ``stress`` (n, 3, 3)."""
+    strain = np.empty((len(stress), 6))
+    dispatch.elastic_strain_from_stress_all(
+        dispatch.pack([ground.soil]), material, six_vectors(stress), strain
+    )
+    return tensors_of(strain)
