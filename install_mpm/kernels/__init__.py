@@ -1,1 +1,1 @@
-"""Compiled loops over cells and points: no I/O, no allocation of state, no validation."""
+"""Numba loops of the installation stage: no I/O, no allocation of state, equations with their numbers."""

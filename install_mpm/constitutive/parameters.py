@@ -1,0 +1,62 @@
+"""Parameters of the soil and interface laws: unit, range and meaning of each, written once.
+
+The case reader derives its checks from the annotations; ``dispatch.pack`` turns a record into the float row that the
+kernels read.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from annotated_types import Ge, Gt, Lt
+
+from install_mpm.conventions import Unit
+
+Stiffness = Annotated[float, Unit("Pa"), Gt(0)]
+PoissonsRatio = Annotated[float, Ge(0), Lt(0.5)]
+
+
+@dataclass(frozen=True)
+class HenckyElastic:
+    """Isotropic elasticity, linear between Kirchhoff stress and logarithmic strain."""
+
+    youngs_modulus: Stiffness
+    poissons_ratio: PoissonsRatio
+    model: Literal["hencky_elastic"] = "hencky_elastic"
+
+
+@dataclass(frozen=True)
+class VonMises:
+    """Undrained clay: Hencky elastic, perfectly plastic at the shear strength ``undrained_shear_strength``.
+
+    The strength at the original depth d of the material is ``undrained_shear_strength + gradient * d``; it travels
+    with the material as a state variable.
+    """
+
+    youngs_modulus: Stiffness
+    poissons_ratio: PoissonsRatio
+    undrained_shear_strength: Annotated[float, Unit("Pa"), Gt(0)]
+    undrained_shear_strength_gradient: Annotated[float, Unit("Pa/m"), Ge(0)] = 0.0
+    model: Literal["von_mises"] = "von_mises"
+
+
+SoilParameters = HenckyElastic | VonMises
+"""Every soil law a case can name; ``model`` tells them apart."""
+
+
+@dataclass(frozen=True)
+class CoulombInterface:
+    """Pile-soil interface: elastic springs limited by Mohr-Coulomb friction (paper, eqs 10-14).
+
+    The cohesion is ``cohesion + adhesion_factor * undrained_shear_strength`` of the adjacent ground; undrained clay has
+    ``adhesion_factor`` alpha and no friction.  Without friction the interface also carries tension (it is bonded in the
+    normal direction); with friction the tension ends at the apex c / tan(phi).
+    """
+
+    normal_stiffness: Annotated[float, Unit("Pa/m"), Gt(0)]
+    shear_stiffness: Annotated[float, Unit("Pa/m"), Gt(0)]
+    cohesion: Annotated[float, Unit("Pa"), Ge(0)] = 0.0
+    adhesion_factor: Annotated[float, Ge(0)] = 0.0
+    friction_angle: Annotated[float, Unit("rad"), Ge(0), Lt(1.5)] = 0.0
+    dilation_angle: Annotated[float, Unit("rad"), Ge(0), Lt(1.5)] = 0.0

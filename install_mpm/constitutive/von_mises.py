@@ -1,0 +1,94 @@
+"""Perfectly plastic von Mises solid for undrained clay, backward Euler with consistent tangent.
+
+    f = |s| - sqrt(2) s_u <= 0 ,   s = dev(tau)
+
+so that the shear strength in simple shear and in plane strain is s_u (Simo and Hughes 1998, box 3.2).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from install_mpm._jit import jit
+from install_mpm.constitutive import elastic
+from install_mpm.constitutive.elastic import (  # the elastic part of the law is shared
+    SHEAR,
+    elastic_strain_from_stress,
+    elastic_stress,
+    elastic_tangent,
+)
+from install_mpm.constitutive.mandel import SQRT2, trace
+from install_mpm.constitutive.parameters import VonMises
+
+STATE_VARIABLES = ("undrained_shear_strength", "plastic_shear_strain")
+"""Strength in Pa carried by the material; accumulated plastic shear strain sqrt(2) |d eps_p|, dimensionless."""
+
+STRENGTH, PLASTIC_SHEAR = 0, 1
+
+__all__ = ["elastic_strain_from_stress", "initial_state", "pack", "update_stress", "yield_function"]
+
+
+def pack(parameters: VonMises) -> np.ndarray:
+    """Return the packed parameters: bulk and shear modulus in Pa; the strength is a state variable."""
+    return elastic.pack(parameters)
+
+
+def initial_state(parameters: VonMises, depth: np.ndarray) -> np.ndarray:
+    """Return the state variables (n, 2) of material at ``depth`` (n,) in m."""
+    strength = (
+        parameters.undrained_shear_strength + parameters.undrained_shear_strength_gradient * depth
+    )
+    return np.column_stack([strength, np.zeros_like(depth)])
+
+
+@jit
+def deviator_norm(stress):
+    """Return |s|, the norm of the deviator of ``stress`` (6,)."""
+    mean = trace(stress) / 3.0
+    total = 0.0
+    for i in range(6):
+        deviator = stress[i] - mean if i < 3 else stress[i]
+        total += deviator * deviator
+    return np.sqrt(total)
+
+
+@jit
+def yield_function(stress, parameters, state):
+    """Return f in Pa; zero or negative is admissible."""
+    return deviator_norm(stress) - SQRT2 * state[STRENGTH]
+
+
+@jit
+def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, state, tangent):
+    """Return radially to the cylinder; see ``dispatch.update_stress`` for arguments and status."""
+    elastic_stress(trial_strain, parameters, stress)
+    elastic_tangent(parameters, tangent)
+    elastic_strain[:] = trial_strain
+    state[:] = state_old
+
+    trial_norm = deviator_norm(stress)
+    radius = SQRT2 * state_old[STRENGTH]
+    if trial_norm <= radius:
+        return 0
+
+    shear = parameters[SHEAR]
+    mean = trace(stress) / 3.0
+    plastic_strain = (trial_norm - radius) / (2.0 * shear)
+    shrink = radius / trial_norm
+    direction = np.empty(6)
+    for i in range(6):
+        direction[i] = (stress[i] - mean if i < 3 else stress[i]) / trial_norm
+        stress[i] = (mean if i < 3 else 0.0) + radius * direction[i]
+        elastic_strain[i] -= plastic_strain * direction[i]
+    state[PLASTIC_SHEAR] += SQRT2 * plastic_strain
+
+    # D = K 1x1 + 2G r/|s_tr| (I_dev - n x n); the elastic tangent already holds K 1x1 + 2G I_dev
+    loss = 2.0 * shear * (1.0 - shrink)
+    for i in range(6):
+        tangent[i, i] -= loss
+        for j in range(6):
+            tangent[i, j] -= 2.0 * shear * shrink * direction[i] * direction[j]
+    for i in range(3):
+        for j in range(3):
+            tangent[i, j] += loss / 3.0
+    return 0

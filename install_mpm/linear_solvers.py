@@ -1,0 +1,88 @@
+"""Linear solvers as values: each function returns ``solve(values, right_hand_side) -> solution``.
+
+The sparsity pattern is given once, so analysis is done once.  The tangent is not symmetric in general (mean dilatation,
+non-associated flow, friction), so only LU methods are offered here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from install_mpm.assembly import SparsityPattern, as_matrix
+
+Solve = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+class SingularMatrixError(ArithmeticError):
+    """The tangent could not be factorised; the step is made shorter."""
+
+
+def mumps(pattern: SparsityPattern) -> Solve:
+    """Return a MUMPS LU solver (through PETSc) that analyses the pattern once.
+
+    Raises
+    ------
+    SingularMatrixError
+        From the returned function, if a factorisation fails.
+    """
+    from petsc4py import PETSc
+
+    n_dofs = len(pattern.indptr) - 1
+    values_in_place = np.zeros(len(pattern.indices))
+    matrix = PETSc.Mat().createAIJ(
+        size=(n_dofs, n_dofs),
+        csr=(pattern.indptr, pattern.indices, values_in_place),
+        comm=PETSc.COMM_SELF,
+    )
+    solver = PETSc.KSP().create(PETSc.COMM_SELF)
+    solver.setType("preonly")
+    factorisation = solver.getPC()
+    factorisation.setType("lu")
+    factorisation.setFactorSolverType("mumps")
+    prefix = f"screwpile_{id(pattern)}_"
+    solver.setOptionsPrefix(prefix)
+    options = PETSc.Options(prefix)
+    # the analysis must not depend on values, or a resumed run would round differently
+    options["mat_mumps_icntl_6"] = 0
+    solver.setFromOptions()
+    solution, load = matrix.createVecs()
+
+    def solve(values: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
+        matrix.setValuesCSR(pattern.indptr, pattern.indices, values)
+        matrix.assemble()
+        solver.setOperators(matrix)
+        load.setArray(right_hand_side)
+        solver.solve(load, solution)
+        result = np.array(solution.getArray())
+        if solver.getConvergedReason() < 0 or not np.isfinite(result).all():
+            raise SingularMatrixError("MUMPS could not factorise the tangent")
+        return result
+
+    return solve
+
+
+def superlu(pattern: SparsityPattern) -> Solve:
+    """Return scipy's SuperLU solver, for machines without PETSc; slow in three dimensions.
+
+    Raises
+    ------
+    SingularMatrixError
+        From the returned function, if the matrix is exactly singular.
+    """
+
+    def solve(values: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
+        try:
+            factors = splu(sparse.csc_matrix(as_matrix(pattern, values)))
+        except RuntimeError as error:
+            raise SingularMatrixError(f"SuperLU: {error}") from error
+        return np.asarray(factors.solve(right_hand_side))
+
+    return solve
+
+
+SOLVERS: dict[str, Callable[[SparsityPattern], Solve]] = {"mumps": mumps, "superlu": superlu}
+"""Names that a case file can give."""

@@ -1,0 +1,57 @@
+"""Options of the installation stage: box, meshes, motion and numerics, each with unit and range."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le
+
+from install_mpm.conventions import Unit
+
+Length = Annotated[float, Unit("m"), Gt(0)]
+Share = Annotated[float, Gt(0), Le(1)]
+
+
+@dataclass(frozen=True)
+class Box:
+    """The modelled ground and the empty layer above it into which soil can heave."""
+
+    width: Length
+    depth: Length
+    headroom: Length
+
+
+@dataclass(frozen=True)
+class BackgroundMeshOptions:
+    """Sizes of the background mesh, and how many material points each cell starts with."""
+
+    size_at_pile: Length
+    size_far: Length
+    rigid_zone: Annotated[float, Unit("m"), Ge(0)] = 0.0
+    points_per_direction: Annotated[int, Ge(1), Le(4)] = 2
+    """Points per sub-region and direction: a triangle has 3 sub-regions, so 2 gives 12 points."""
+
+
+@dataclass(frozen=True)
+class InstallationProgramme:
+    """How the pile is driven: penetration in equal steps (0 m leaves the pile wished in place)."""
+
+    penetration: Annotated[float, Unit("m"), Ge(0)]
+    step: Length
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """Numerical parameters of the installation; the defaults are explained in docs/method.md."""
+
+    tolerance: Annotated[float, Gt(0), Le(1e-6)] = 1e-9
+    max_iterations: Annotated[int, Ge(3)] = 25
+    max_cuts: Annotated[int, Ge(0)] = 6
+    volumetric_term: Annotated[float, Ge(0)] = 0.1
+    """Stiffness h_v of the volumetric term over Young's modulus; acts within a step, is never stored."""
+    fill_threshold: Share = 0.3
+    soft_stiffness: Annotated[float, Ge(0)] = 1e-3
+    checkpoint_every: Annotated[int, Ge(1)] = 10
+    linear_solver: str = "mumps"
+    random_seed: int = 0

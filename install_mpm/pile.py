@@ -1,0 +1,53 @@
+"""The rigid pile: its shape, its surface with exact normals, and its weight."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Annotated
+
+import numpy as np
+from annotated_types import Ge, Gt
+
+from install_mpm.conventions import Unit
+
+
+class PilePart(IntEnum):
+    """Parts of the pile surface, each with its own exact normal."""
+
+    BASE = 0
+    SHAFT = 1
+
+
+@dataclass(frozen=True)
+class Pile:
+    """Flat-ended pile of a plane-strain half model: x <= half_width, from its tip up through the surface.
+
+    ``embedment`` is the depth of the tip at the start, at which the pile is wished in place.
+    """
+
+    half_width: Annotated[float, Unit("m"), Gt(0)]
+    embedment: Annotated[float, Unit("m"), Gt(0)]
+    unit_weight: Annotated[float, Unit("N/m^3"), Ge(0)]
+
+
+SYMMETRY_FACTOR = 2.0
+"""Whole pile over modelled half: histories, curves and reports are for the whole pile, per metre run."""
+
+
+def surface_normals(part: np.ndarray) -> np.ndarray:
+    """Return the exact unit normals (n, 2), from soil to pile, of interface points on ``part`` (n,)."""
+    normals = np.zeros((len(part), 2))
+    normals[part == PilePart.BASE] = (0.0, 1.0)
+    normals[part == PilePart.SHAFT] = (-1.0, 0.0)
+    return normals
+
+
+def tangent_of(normals: np.ndarray) -> np.ndarray:
+    """Return the unit tangents (n, 2): the normals turned by +90 degrees; on the shaft they point down."""
+    return np.column_stack([-normals[:, 1], normals[:, 0]])
+
+
+def buried_weight(pile: Pile, tip_depth: float) -> float:
+    """Return the weight in N per metre run of the modelled half of the pile below the ground surface."""
+    return pile.unit_weight * pile.half_width * tip_depth

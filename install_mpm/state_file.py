@@ -1,0 +1,143 @@
+"""The installed state: what stage 1 hands to the rest, and its HDF5 file."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Annotated, NamedTuple
+
+import h5py
+import numpy as np
+
+from install_mpm.background_mesh import BackgroundMesh
+from install_mpm.conventions import Kinematics, conventions_hash
+from install_mpm.history import History
+from install_mpm.interface import InterfacePoints
+from install_mpm.material_points import MaterialPoints
+from install_mpm.record import Field, StateFileError, read_record, write_record
+
+FORMAT = "screwpile-installed-state"
+VERSION = 1
+
+
+class PileState(NamedTuple):
+    """Where the rigid pile is and what the soil does to it."""
+
+    penetration: Annotated[np.ndarray, Field((), "m", "advance since the start, positive downward")]
+    rotation: Annotated[np.ndarray, Field((), "rad", "right-handed about +z since the start")]
+    tip_depth: Annotated[np.ndarray, Field((), "m", "depth of the tip below the original surface")]
+    reaction: Annotated[
+        np.ndarray, Field(("dim",), "N", "force of the soil on the modelled half of the pile")
+    ]
+
+
+class InstalledState(NamedTuple):
+    """Everything stage 1 knows at the end of a step; also the content of a checkpoint."""
+
+    material_points: MaterialPoints
+    background_mesh: BackgroundMesh
+    interface: InterfacePoints
+    pile: PileState
+    history: History
+    case_text: str
+    kinematics: Kinematics
+
+
+RECORDS = {
+    "material_points": MaterialPoints,
+    "background_mesh": BackgroundMesh,
+    "interface": InterfacePoints,
+    "pile": PileState,
+    "history": History,
+}
+
+
+def case_hash(case_text: str) -> str:
+    """Return the hash by which later stages recognise the case that a file belongs to."""
+    return hashlib.sha256(case_text.encode()).hexdigest()
+
+
+def write_header(
+    file: h5py.File, file_format: str, version: int, case_text: str, created_by: str
+) -> None:
+    """Write the root attributes and the case that every state file carries."""
+    file.attrs["format"] = file_format
+    file.attrs["version"] = version
+    file.attrs["created_by"] = created_by
+    file.attrs["case_sha256"] = case_hash(case_text)
+    file.attrs["conventions"] = conventions_hash()
+    file.create_group("case").attrs["toml"] = case_text
+
+
+def read_header(file: h5py.File, file_format: str, version: int) -> str:
+    """Check the root attributes and return the case text.
+
+    Raises
+    ------
+    StateFileError
+        If the file is of another format, version or convention, or its case does not match its hash.
+    """
+    path, remedy = file.filename, "write it again with this version of screwpile"
+    found = file.attrs.get("format")
+    if found != file_format:
+        raise StateFileError(f"{path}: attribute format is {found!r}, expected {file_format!r}; give the right file")
+    if file.attrs.get("version") != version:
+        raise StateFileError(
+            f"{path}: version {file.attrs.get('version')} of {file_format} is not version {version}; {remedy}"
+        )
+    if file.attrs.get("conventions") != conventions_hash():
+        raise StateFileError(f"{path}: written under other conventions of sign or axes; {remedy}")
+    case_text = file["case"].attrs.get("toml") if "case" in file else None
+    if not isinstance(case_text, str) or case_hash(case_text) != file.attrs.get("case_sha256"):
+        raise StateFileError(f"{path}: group /case is missing or does not match its hash; {remedy}")
+    return case_text
+
+
+def open_state_file(path: Path) -> h5py.File:
+    """Open an HDF5 state file for reading.
+
+    Raises
+    ------
+    StateFileError
+        If it does not exist, is truncated or is no HDF5 file.
+    """
+    if not path.exists():
+        raise StateFileError(f"{path}: no such file; run the stage that writes it first")
+    try:
+        return h5py.File(path, "r")
+    except OSError as error:
+        raise StateFileError(
+            f"{path}: truncated or not an HDF5 file ({error}); write it again with the stage that makes it"
+        ) from error
+
+
+def write_installed_state(path: Path, state: InstalledState, created_by: str) -> None:
+    """Write the state to ``path`` atomically: a reader sees the old file or the whole new one."""
+    partial = path.with_suffix(path.suffix + ".partial")
+    with h5py.File(partial, "w") as file:
+        write_header(file, FORMAT, VERSION, state.case_text, created_by)
+        file.attrs["kinematics"] = state.kinematics.name
+        for name in RECORDS:
+            write_record(file.create_group(name), getattr(state, name))
+    partial.replace(path)
+
+
+def read_installed_state(path: Path) -> InstalledState:
+    """Return the state stored at ``path``.
+
+    Raises
+    ------
+    StateFileError
+        If the file is damaged, foreign or of another version.
+    """
+    with open_state_file(path) as file:
+        case_text = read_header(file, FORMAT, VERSION)
+        name = file.attrs.get("kinematics")
+        if name not in Kinematics.__members__:
+            raise StateFileError(f"{path}: attribute kinematics is {name!r}; write the file again")
+        records = {}
+        for group, record_type in RECORDS.items():
+            if group not in file:
+                raise StateFileError(f"{path}: group /{group} is missing; write the file again")
+            records[group] = read_record(file[group], record_type)
+        return InstalledState(**records, case_text=case_text, kinematics=Kinematics[name])
