@@ -1,8 +1,8 @@
 """The finite-element mesh of the installed pile: straight-edged 6-node triangles.
 
-The ground is meshed with a level surface, conforming to the pile at its installed depth; the surface
-is then warped to the profile that the installation left.  Two models with the same depth and a level
-surface get the identical mesh.
+The ground is meshed with a level surface, conforming to the pile at its installed depth; the
+surface is then warped to the profile that the installation left.  Two models with the same depth
+and a level surface get the identical mesh.
 """
 
 from __future__ import annotations
@@ -12,7 +12,19 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from handoff.gmsh_triangles import MeshError, triangulate
+from handoff.options import HandoffOptions
+from handoff.surface import SurfaceProfile, height_at
+from install_mpm.options import Box
+from install_mpm.pile import Pile
 from install_mpm.record import Field
+
+SHAFT_SIZE = 2.0
+"""Edge length along base and shaft, away from the corner, over the one at the corner."""
+GROWTH = 0.15
+"""Growth of the edge length per distance from the pile."""
+SMALLEST_QUALITY = 0.1
+"""Cells worse than this make a poor stiffness matrix; the surface is then too steep to be followed."""
 
 
 class FacetTag(IntEnum):
@@ -48,3 +60,146 @@ class FEMesh(NamedTuple):
     facet_tag: Annotated[
         np.ndarray, Field(("facet",), "", "FacetTag of each boundary edge", "int64")
     ]
+
+
+def make_mesh(
+    pile: Pile, tip_depth: float, box: Box, options: HandoffOptions, surface: SurfaceProfile
+) -> FEMesh:
+    """Return the mesh of the soil around the pile whose tip is ``tip_depth`` m deep.
+
+    Edges are ``size_at_pile`` long at the corner of the pile, twice that along base and shaft and
+    grow to ``size_far``.
+
+    Raises
+    ------
+    MeshError
+        If the pile does not fit into the box or is narrower than a cell, or if the surface is too
+        steep for the mesh to follow.
+    """
+    _check_geometry(pile, tip_depth, box, options)
+    vertices, triangles = triangulate(
+        _outline(pile, tip_depth, box), lambda x, z: _edge_length(x, z, pile, tip_depth, options)
+    )
+    cell_nodes, facet_nodes = _quadratic_cells(len(vertices), triangles)
+    tags = _facet_tags(vertices[facet_nodes[:, :2]].mean(axis=1), pile, tip_depth, box)
+    warped = _warped(vertices, tip_depth, surface)
+    mesh = FEMesh(_with_mid_sides(warped, cell_nodes), cell_nodes, facet_nodes, tags)
+    _check_quality(mesh)
+    return mesh
+
+
+def cell_areas(mesh: FEMesh) -> np.ndarray:
+    """Return the signed area (cell,) in m^2; negative for an inverted cell."""
+    first, second, third = np.moveaxis(mesh.nodes[mesh.cell_nodes[:, :3]], 1, 0)
+    a, b = second - first, third - first
+    areas: np.ndarray = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    return areas
+
+
+def mesh_quality(mesh: FEMesh) -> np.ndarray:
+    """Return 2 r_in / r_out (cell,): 1 for an equilateral, 0 for a flat, negative for an inverted cell."""
+    corners = mesh.nodes[mesh.cell_nodes[:, :3]]
+    edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+    quality: np.ndarray = (
+        16.0 * cell_areas(mesh) ** 2 / (edges.sum(axis=1) * edges.prod(axis=1))
+    ) * np.sign(cell_areas(mesh))
+    return quality
+
+
+def _check_geometry(pile: Pile, tip_depth: float, box: Box, options: HandoffOptions) -> None:
+    if not 0.0 < tip_depth < box.depth or pile.half_width >= box.width:
+        raise MeshError(
+            f"the pile (half-width {pile.half_width:g} m, tip {tip_depth:g} m deep) does not fit into"
+            f" the box of {box.width:g} m x {box.depth:g} m; make the box larger"
+        )
+    if options.size_at_pile > pile.half_width:
+        raise MeshError(
+            f"handoff.size_at_pile is {options.size_at_pile:g} m, larger than the half-width of the"
+            f" pile, {pile.half_width:g} m; make it smaller"
+        )
+    if options.size_far < options.size_at_pile:
+        raise MeshError("handoff.size_far is smaller than handoff.size_at_pile; make it larger")
+
+
+def _outline(pile: Pile, tip_depth: float, box: Box) -> np.ndarray:
+    """Return the corners (6, 2) of the soil, counter-clockwise from the pile's tip on the axis."""
+    return np.array(
+        [
+            (0.0, -tip_depth),
+            (0.0, -box.depth),
+            (box.width, -box.depth),
+            (box.width, 0.0),
+            (pile.half_width, 0.0),
+            (pile.half_width, -tip_depth),
+        ]
+    )
+
+
+def _edge_length(
+    x: float, z: float, pile: Pile, tip_depth: float, options: HandoffOptions
+) -> float:
+    """Return the wanted edge length in m at a place in the soil."""
+    beside, below = max(x - pile.half_width, 0.0), max(-tip_depth - z, 0.0)
+    to_corner = float(np.hypot(x - pile.half_width, z + tip_depth))
+    to_pile = float(np.hypot(beside, below))
+    return min(
+        options.size_far,
+        options.size_at_pile + GROWTH * to_corner,
+        SHAFT_SIZE * options.size_at_pile + GROWTH * to_pile,
+    )
+
+
+def _quadratic_cells(n_vertices: int, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return 6-node cells, mid-sides numbered after the vertices, and the boundary edges."""
+    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+    _, edge, uses = np.unique(
+        np.sort(ends, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+    edge = edge.reshape(-1)
+    mid_sides = n_vertices + edge
+    on_boundary = uses[edge] == 1
+    cell_nodes = np.column_stack([triangles, mid_sides.reshape(-1, 3)])
+    facet_nodes = np.column_stack([ends, mid_sides])[on_boundary]
+    return cell_nodes.astype(np.int64), facet_nodes.astype(np.int64)
+
+
+def _facet_tags(centres: np.ndarray, pile: Pile, tip_depth: float, box: Box) -> np.ndarray:
+    """Return the ``FacetTag`` (facet,) of boundary edges of the level mesh with ``centres``."""
+    x, z = centres.T
+    slack = 1e-9 * max(box.width, box.depth)
+    tags = np.full(len(centres), int(FacetTag.PILE_SHAFT))
+    tags[np.abs(z) < slack] = FacetTag.SURFACE
+    tags[np.abs(z + box.depth) < slack] = FacetTag.BOTTOM
+    tags[np.abs(x - box.width) < slack] = FacetTag.SIDE
+    tags[np.abs(x) < slack] = FacetTag.SYMMETRY
+    tags[(np.abs(z + tip_depth) < slack) & (x < pile.half_width)] = FacetTag.PILE_BASE
+    return tags.astype(np.int64)
+
+
+def _warped(vertices: np.ndarray, tip_depth: float, surface: SurfaceProfile) -> np.ndarray:
+    """Return the vertices moved vertically with the surface; the motion fades linearly to the tip."""
+    x, z = vertices.T
+    fading = np.clip(1.0 + z / tip_depth, 0.0, 1.0)
+    return np.column_stack([x, z + fading * height_at(surface, x)])
+
+
+def _with_mid_sides(vertices: np.ndarray, cell_nodes: np.ndarray) -> np.ndarray:
+    """Return the vertices followed by the mid-sides, which lie halfway between their vertices."""
+    nodes = np.empty((cell_nodes.max() + 1, 2))
+    nodes[: len(vertices)] = vertices
+    for corner in range(3):
+        ends = cell_nodes[:, corner], cell_nodes[:, (corner + 1) % 3]
+        nodes[cell_nodes[:, 3 + corner]] = 0.5 * (vertices[ends[0]] + vertices[ends[1]])
+    return nodes
+
+
+def _check_quality(mesh: FEMesh) -> None:
+    quality = mesh_quality(mesh)
+    worst = int(np.argmin(quality))
+    if quality[worst] < SMALLEST_QUALITY:
+        x, z = mesh.nodes[mesh.cell_nodes[worst, :3]].mean(axis=0)
+        raise MeshError(
+            f"the finite-element cell at ({x:.2f} m, {z:.2f} m) has quality {quality[worst]:.2g} (1 is"
+            f" equilateral, at least {SMALLEST_QUALITY} is needed): the ground surface left by the"
+            " installation is too steep there; use a smaller handoff.size_at_pile"
+        )
