@@ -16,6 +16,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from handoff.fe_state_file import FEState
+from handoff.options import HandoffOptions
+
+HALVINGS = 4
+"""How often a ramp that does not converge is halved."""
 
 
 class EquilibrationError(RuntimeError):
@@ -72,10 +76,92 @@ class EquilibriumProblem(Protocol):
     def release(self, state: FEState, share: float) -> ReleasedState:
         """Return the state when ``share`` (0 to 1] of the out-of-balance force has gone, pile held.
 
-        Solves f_int(new) = f_ext - (1 - share) (f_ext - f_int(state)), elastoplastic from ``state``.
+        Solves f_int(new) = f_ext - (1 - share) (f_ext - f_int(state)), elastoplastically.
 
         Raises
         ------
         EquilibrationError
             If Newton's method does not converge.
         """
+
+
+class EquilibrationReport(NamedTuple):
+    """What the equilibration changed."""
+
+    out_of_balance_before: float
+    """Out-of-balance force of the transferred state over the weight of the soil."""
+    out_of_balance_after: float
+    """The same at the end."""
+    stress_change: float
+    """Norm of the stress change over the norm of the stress (L2 over the soil)."""
+    largest_displacement: float
+    """Largest nodal displacement in m."""
+    iterations: tuple[int, ...]
+    """Newton iterations of each ramp."""
+
+
+def equilibrate(
+    problem: EquilibriumProblem, state: FEState, options: HandoffOptions
+) -> tuple[FEState, EquilibrationReport]:
+    """Return the state in equilibrium with gravity, and what that changed.
+
+    A state that balances gravity to ``max_out_of_balance`` already is returned as it is.
+
+    Raises
+    ------
+    EquilibrationError
+        If a ramp does not converge after ``HALVINGS`` halvings, or if the out-of-balance force left
+        exceeds ``max_out_of_balance``.
+    """
+    before = problem.out_of_balance(state)
+    if before <= options.max_out_of_balance:
+        return state, EquilibrationReport(before, before, 0.0, 0.0, ())
+    balanced, displacement, iterations = _released(problem, state, options.equilibration_steps)
+    after = problem.out_of_balance(balanced)
+    if not after <= options.max_out_of_balance:
+        raise EquilibrationError(
+            f"after equilibration {after:.2g} of the soil's weight is out of balance, more than"
+            f" handoff.max_out_of_balance = {options.max_out_of_balance:.2g};"
+            " tighten service.tolerance"
+        )
+    report = EquilibrationReport(
+        out_of_balance_before=before,
+        out_of_balance_after=after,
+        stress_change=_stress_change(problem.integration_volumes, state, balanced),
+        largest_displacement=float(np.linalg.norm(displacement, axis=1).max()),
+        iterations=iterations,
+    )
+    return balanced._replace(pile_displacement=np.zeros(2)), report
+
+
+def _released(
+    problem: EquilibriumProblem, state: FEState, n_ramps: int
+) -> tuple[FEState, np.ndarray, tuple[int, ...]]:
+    """Return the state with nothing left out of balance, the displacement and the iterations."""
+    lifted, ramp = 0.0, 1.0 / n_ramps
+    displacement: np.ndarray | float = 0.0
+    iterations: list[int] = []
+    while lifted < 1.0:
+        target = lifted + ramp if lifted + 1.001 * ramp < 1.0 else 1.0
+        try:
+            step = problem.release(state, (target - lifted) / (1.0 - lifted))
+        except EquilibrationError as error:
+            ramp *= 0.5
+            if ramp * n_ramps < 0.5**HALVINGS:
+                raise EquilibrationError(
+                    f"the transferred state cannot be equilibrated: Newton's method failed after"
+                    f" {lifted:.0%} of the out-of-balance force was released ({error});"
+                    " refine the finite-element mesh or increase handoff.equilibration_steps"
+                ) from error
+            continue
+        state, lifted = step.state, target
+        displacement = displacement + step.displacement
+        iterations.append(step.iterations)
+    return state, np.asarray(displacement), tuple(iterations)
+
+
+def _stress_change(volumes: np.ndarray, before: FEState, after: FEState) -> float:
+    """Return the volume-weighted norm of the stress change over that of the stress before."""
+    change = ((after.cauchy_stress - before.cauchy_stress) ** 2).sum(axis=(1, 2))
+    stress = (before.cauchy_stress**2).sum(axis=(1, 2))
+    return float(np.sqrt((volumes @ change) / (volumes @ stress)))

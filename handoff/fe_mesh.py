@@ -24,7 +24,7 @@ SHAFT_SIZE = 2.0
 GROWTH = 0.15
 """Growth of the edge length per distance from the pile."""
 SMALLEST_QUALITY = 0.1
-"""Cells worse than this make a poor stiffness matrix; the surface is then too steep to be followed."""
+"""Cells worse than this make a poor stiffness matrix: the surface is too steep to be followed."""
 
 
 class FacetTag(IntEnum):
@@ -97,7 +97,7 @@ def cell_areas(mesh: FEMesh) -> np.ndarray:
 
 
 def mesh_quality(mesh: FEMesh) -> np.ndarray:
-    """Return 2 r_in / r_out (cell,): 1 for an equilateral, 0 for a flat, negative for an inverted cell."""
+    """Return 2 r_in / r_out (cell,): 1 equilateral, 0 flat, negative for an inverted cell."""
     corners = mesh.nodes[mesh.cell_nodes[:, :3]]
     edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
     quality: np.ndarray = (
@@ -109,13 +109,13 @@ def mesh_quality(mesh: FEMesh) -> np.ndarray:
 def _check_geometry(pile: Pile, tip_depth: float, box: Box, options: HandoffOptions) -> None:
     if not 0.0 < tip_depth < box.depth or pile.half_width >= box.width:
         raise MeshError(
-            f"the pile (half-width {pile.half_width:g} m, tip {tip_depth:g} m deep) does not fit into"
-            f" the box of {box.width:g} m x {box.depth:g} m; make the box larger"
+            f"the pile (half-width {pile.half_width:g} m, tip {tip_depth:g} m deep) does not fit"
+            f" into the box of {box.width:g} m x {box.depth:g} m; make the box larger"
         )
     if options.size_at_pile > pile.half_width:
         raise MeshError(
-            f"handoff.size_at_pile is {options.size_at_pile:g} m, larger than the half-width of the"
-            f" pile, {pile.half_width:g} m; make it smaller"
+            f"handoff.size_at_pile is {options.size_at_pile:g} m, larger than the half-width of"
+            f" the pile, {pile.half_width:g} m; make it smaller"
         )
     if options.size_far < options.size_at_pile:
         raise MeshError("handoff.size_far is smaller than handoff.size_at_pile; make it larger")
@@ -177,14 +177,14 @@ def _facet_tags(centres: np.ndarray, pile: Pile, tip_depth: float, box: Box) -> 
 
 
 def _warped(vertices: np.ndarray, tip_depth: float, surface: SurfaceProfile) -> np.ndarray:
-    """Return the vertices moved vertically with the surface; the motion fades linearly to the tip."""
+    """Return the vertices moved vertically with the surface; this fades linearly to the tip."""
     x, z = vertices.T
     fading = np.clip(1.0 + z / tip_depth, 0.0, 1.0)
     return np.column_stack([x, z + fading * height_at(surface, x)])
 
 
 def _with_mid_sides(vertices: np.ndarray, cell_nodes: np.ndarray) -> np.ndarray:
-    """Return the vertices followed by the mid-sides, which lie halfway between their vertices."""
+    """Return the vertices followed by the mid-sides, halfway between their vertices."""
     nodes = np.empty((cell_nodes.max() + 1, 2))
     nodes[: len(vertices)] = vertices
     for corner in range(3):
@@ -199,7 +199,7 @@ def _check_quality(mesh: FEMesh) -> None:
     if quality[worst] < SMALLEST_QUALITY:
         x, z = mesh.nodes[mesh.cell_nodes[worst, :3]].mean(axis=0)
         raise MeshError(
-            f"the finite-element cell at ({x:.2f} m, {z:.2f} m) has quality {quality[worst]:.2g} (1 is"
-            f" equilateral, at least {SMALLEST_QUALITY} is needed): the ground surface left by the"
-            " installation is too steep there; use a smaller handoff.size_at_pile"
+            f"the finite-element cell at ({x:.2f} m, {z:.2f} m) has quality {quality[worst]:.2g}"
+            f" (1 is equilateral, at least {SMALLEST_QUALITY} is needed): the ground surface left"
+            " by the installation is too steep there; use a smaller handoff.size_at_pile"
         )

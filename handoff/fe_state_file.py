@@ -146,7 +146,7 @@ def _read_certificate(path: Path, file: object) -> str:
 
 
 def _check_extents(path: Path, handed_off: HandedOffState) -> None:
-    """Check that point counts agree between groups, and that cells and facets name existing nodes."""
+    """Check that the groups belong together: numbers of points, and nodes named by cells."""
     mesh, state = handed_off.mesh, handed_off.state
     counts = {
         "integration": (len(handed_off.integration.volume), len(state.material)),

@@ -1,4 +1,4 @@
-"""gmsh as a function from an outline and an edge length to triangles: repeatable, quiet, no traces."""
+"""gmsh as a function from outline and edge length to triangles: repeatable, quiet, no traces."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ OPTIONS = {
     "Mesh.MeshSizeFactor": 1.0,
     "Mesh.ElementOrder": 1.0,
 }
-"""One thread and one seed: the same outline gives the same mesh.  Algorithm 6 is Frontal-Delaunay."""
+"""One thread and one seed: the same outline gives the same mesh; 6 is Frontal-Delaunay."""
 
 
 class MeshError(RuntimeError):
@@ -33,8 +33,8 @@ def triangulate(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return vertices (n, 2) in m and counter-clockwise triangles (m, 3) int64 that fill a polygon.
 
-    ``outline`` (corners, 2) in m is counter-clockwise; ``edge_length(x, z)`` is the wanted length in
-    m.  The same arguments give bit-equal results.
+    ``outline`` (corners, 2) in m is counter-clockwise; ``edge_length(x, z)`` is the wanted length
+    in m.  The same arguments give bit-equal results.
 
     Raises
     ------

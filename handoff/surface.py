@@ -4,8 +4,8 @@ Local regression (loess) of the vertical displacement of the points that started
 
     u_z(x, d) = a + b (x - x_s) + c d ,
 
-at stations x_s along the present surface; d is the depth at which a point started, so a is the motion of
-the surface itself rather than of the uppermost points.
+at stations x_s along the present surface; d is the depth at which a point started, so a is the
+motion of the surface itself rather than of the uppermost points.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ def height_at(surface: SurfaceProfile, x: np.ndarray) -> np.ndarray:
 
 
 def surface_profile(points: MaterialPoints, half_width: float, station: float) -> SurfaceProfile:
-    """Return the present surface beside a pile of ``half_width`` m, at stations ``station`` m apart.
+    """Return the present surface beside the pile of ``half_width`` m, in pieces of ``station`` m.
 
-    Level, exactly, if no point has moved.  Where the soil has left a gap beside the shaft the profile
-    runs on level from the nearest soil; slopes are limited to ``STEEPEST``.
+    Level, exactly, if no point has moved.  Where the soil has left a gap beside the shaft the
+    profile runs on level from the nearest soil; slopes are limited to ``STEEPEST``.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def surface_profile(points: MaterialPoints, half_width: float, station: float) -
 
 
 def _stations(x: np.ndarray, half_width: float, spacing: float) -> np.ndarray:
-    """Return evenly spaced stations between the shaft, or the edge of a gap beside it, and the far end."""
+    """Return even stations from the shaft, or the edge of a gap beside it, to the far end."""
     reach = 0.5 * spacing
     start = half_width if x.min() - half_width < reach else x.min()
     count = max(2, int(np.ceil((x.max() - start) / spacing)) + 1)
@@ -83,7 +83,7 @@ def _stations(x: np.ndarray, half_width: float, spacing: float) -> np.ndarray:
 def _regressed(
     stations: np.ndarray, x: np.ndarray, depth: np.ndarray, displacement: np.ndarray
 ) -> np.ndarray:
-    """Return the regression (n_stations,) at depth zero; tricube weights, bisquare against outliers."""
+    """Return the regression (n_stations,) at depth zero, with tricube weights."""
     heights = np.empty(len(stations))
     for index, station in enumerate(stations):
         offset = x - station
@@ -96,7 +96,7 @@ def _regressed(
 
 
 def _robust_fit(terms: np.ndarray, values: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return weighted least-squares coefficients after two bisquare reweightings (Cleveland 1979)."""
+    """Return least-squares coefficients after two bisquare reweightings (Cleveland 1979)."""
     robustness = np.ones_like(weights)
     coefficients = np.zeros(terms.shape[1])
     for _ in range(3):

@@ -1,13 +1,13 @@
-"""Transfer of fields from material points to other points: volume-weighted linear moving least squares.
+"""Transfer of fields from material points: volume-weighted linear moving least squares.
 
-With weights w_p = V_p (1 - (d_p / R)^2)^2 of the k nearest points, their mean position x_m and their
-second moment C = sum w (x_p - x_m)(x_p - x_m)^T / sum w, the value at x is
+With weights w_p = V_p (1 - (d_p / R)^2)^2 of the k nearest points, their mean position x_m and
+their second moment C = sum w (x_p - x_m)(x_p - x_m)^T / sum w, the value at x is
 
     f(x) = sum_p phi_p f_p ,   phi_p = w_p / sum w (1 + (x - x_m) . C^-1 (x_p - x_m)) .
 
-Constant and linear fields come out exactly, others with second order.  All fields share the weights.
-Only where the neighbours lie nearly on a line is C given a ridge, which keeps constants exact.  Points
-that the pile hides from the target do not contribute.
+Constant and linear fields come out exactly, others with second order.  All fields share the
+weights.  Only where the neighbours lie nearly on a line is C given a ridge, which keeps constants
+exact.  Points that the pile hides from the target do not contribute.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from scipy.spatial import cKDTree
 from install_mpm._jit import jit, parallel_jit, prange
 
 CANDIDATES = 2
-"""Nearest points looked at per neighbour wanted, so that enough are left where the pile hides some."""
+"""Nearest points looked at per neighbour wanted: enough are left where the pile hides some."""
 FEWEST = 6
-"""With fewer visible neighbours than this no gradient is fitted: the value is that of the nearest."""
+"""With fewer visible neighbours than this the value is that of the nearest."""
 FLAT = 1e-3
 """Ratio of the second moments below which neighbours count as lying on a line."""
 SLACK = 0.02
@@ -30,10 +30,13 @@ SLACK = 0.02
 
 
 class Obstacle(NamedTuple):
-    """The pile, which hides points from each other: everything in x < half_width, z > tip_height."""
+    """The pile, x < half_width and z > tip_height, which hides points from each other."""
 
     half_width: float
     tip_height: float
+
+
+NO_OBSTACLE = Obstacle(-1e9, 1e9)
 
 
 class TransferWeights(NamedTuple):
@@ -54,9 +57,11 @@ def least_squares_weights(
     volumes: np.ndarray,
     targets: np.ndarray,
     neighbours: int,
-    obstacle: Obstacle | None = None,
+    obstacle: Obstacle = NO_OBSTACLE,
 ) -> TransferWeights:
-    """Return the weights that carry fields from points (p, 2) with ``volumes`` (p,) to ``targets`` (n, 2).
+    """Return the weights that carry fields from points (p, 2) to ``targets`` (n, 2).
+
+    ``volumes`` (p,) in m^3 are those of the points.
 
     Raises
     ------
@@ -70,7 +75,6 @@ def least_squares_weights(
         )
     n_candidates = min(CANDIDATES * neighbours, len(positions))
     candidates = _nearest_points(positions, targets, n_candidates)
-    corner = np.array(obstacle if obstacle else (-np.inf, np.inf))
     result = TransferWeights(
         np.zeros((len(targets), neighbours), dtype=np.int64),
         np.zeros((len(targets), neighbours)),
@@ -82,7 +86,7 @@ def least_squares_weights(
         np.ascontiguousarray(volumes),
         np.ascontiguousarray(targets),
         candidates,
-        corner,
+        np.array(obstacle),
         *result,
     )
     return result
@@ -101,16 +105,16 @@ def transfer_least_squares(
     values: np.ndarray,
     targets: np.ndarray,
     neighbours: int,
-    obstacle: Obstacle | None = None,
+    obstacle: Obstacle = NO_OBSTACLE,
 ) -> np.ndarray:
-    """Return ``values`` (point, ...) at ``targets`` (n, 2) by volume-weighted linear least squares."""
+    """Return ``values`` (point, ...) at ``targets`` (n, 2) by linear moving least squares."""
     return transferred(
         least_squares_weights(positions, volumes, targets, neighbours, obstacle), values
     )
 
 
 def transfer_nearest(
-    positions: np.ndarray, values: np.ndarray, targets: np.ndarray, obstacle: Obstacle | None = None
+    positions: np.ndarray, values: np.ndarray, targets: np.ndarray, obstacle: Obstacle = NO_OBSTACLE
 ) -> np.ndarray:
     """Return ``values`` (point, ...) of the nearest visible point at ``targets`` (n, 2)."""
     count = min(2 * FEWEST, len(positions))
@@ -129,8 +133,8 @@ def _nearest_points(positions: np.ndarray, targets: np.ndarray, count: int) -> n
 def is_hidden(start: np.ndarray, end: np.ndarray, corner: np.ndarray) -> bool:
     """Return whether the straight line between two places passes through the pile.
 
-    ``corner`` holds half-width and tip height of the pile, x < half_width, z > tip_height; its edges
-    are transparent to a depth of ``SLACK`` half-widths.  Line x(t) = start + t (end - start).
+    ``corner`` holds half-width and tip height of the pile, x < half_width, z > tip_height; its
+    edges are transparent to a depth of ``SLACK`` half-widths.  Line x(t) = start + t (end - start).
     """
     slack = SLACK * corner[0]
     enter, leave = 0.0, 1.0
@@ -188,7 +192,7 @@ def _visible_neighbours(
     corner: np.ndarray,
     neighbours: np.ndarray,
 ) -> int:
-    """Fill ``neighbours`` with the first candidates that the pile does not hide; return their number."""
+    """Fill ``neighbours`` with the first candidates in sight; return their number."""
     count = 0
     for p in candidates:
         if count < neighbours.shape[0] and not is_hidden(target, positions[p], corner):

@@ -1,0 +1,118 @@
+"""Stage 2 on one page: the ground that the installation left becomes a finite-element model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from handoff.admissible import admissible_state, admissible_traction
+from handoff.equilibration import EquilibriumProblem, equilibrate
+from handoff.fe_mesh import FEMesh, make_mesh
+from handoff.fe_state_file import (
+    FEIntegrationPoints,
+    FEInterfacePoints,
+    FEState,
+    HandedOffPile,
+    HandedOffState,
+)
+from handoff.interface_transfer import pile_forces
+from handoff.options import HandoffOptions
+from handoff.quality import Certificate, as_json, certify
+from handoff.state_transfer import state_map, transfer_state
+from handoff.surface import surface_profile
+from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.ground import Ground
+from install_mpm.options import Box
+from install_mpm.pile import SYMMETRY_FACTOR, Pile, buried_weight
+from install_mpm.state_file import InstalledState
+
+
+def hand_over(
+    installed: InstalledState,
+    ground: Ground,
+    pile: Pile,
+    box: Box,
+    interface: CoulombInterface,
+    options: HandoffOptions,
+    make_problem: Callable[[FEMesh], EquilibriumProblem],
+    observe: Callable[[str], None],
+) -> tuple[HandedOffState, Certificate]:
+    """Return the finite-element model of the installed pile, in equilibrium, and its certificate.
+
+    ``make_problem`` makes the finite-element problem on a mesh; ``observe`` is told what begins.
+    The certificate may hold figures beyond their limits (``quality.failed_checks``).
+
+    Raises
+    ------
+    MeshError
+        If the mesh cannot follow the ground surface.
+    EquilibrationError
+        If the transferred state cannot be brought to equilibrium.
+    ValueError
+        If the material points are too few, or no soil touches a part of the pile.
+    """
+    tip_depth, points = float(installed.pile.tip_depth), installed.material_points
+
+    observe("mesh")
+    surface = surface_profile(points, pile.half_width, options.size_at_pile)
+    mesh = make_mesh(pile, tip_depth, box, options, surface)
+    problem = make_problem(mesh)
+
+    observe("transfer")
+    targets = problem.integration_positions
+    state_from_points = state_map(points, pile, tip_depth, targets, options.neighbours)
+    raw = transfer_state(installed, ground, problem, state_from_points)
+
+    observe("admissibility")
+    admissible, corrections = admissible_state(ground, raw)
+    traction = admissible_traction(
+        ground, interface, problem.interface_positions, raw.interface_traction
+    )
+    transferred = admissible._replace(interface_traction=traction)
+
+    observe("equilibration")
+    balanced, report = equilibrate(problem, transferred, options)
+
+    observe("certificate")
+    certificate = certify(
+        installed,
+        ground,
+        pile,
+        problem,
+        options,
+        state_from_points,
+        corrections,
+        transferred,
+        balanced,
+        report,
+    )
+    weight = buried_weight(pile, tip_depth)
+    return _handed_off(installed, mesh, problem, balanced, weight, certificate), certificate
+
+
+def _handed_off(
+    installed: InstalledState,
+    mesh: FEMesh,
+    problem: EquilibriumProblem,
+    state: FEState,
+    pile_weight: float,
+    certificate: Certificate,
+) -> HandedOffState:
+    """Return the record of everything that the service stage starts from."""
+    normals, areas, parts = (
+        problem.interface_normals,
+        problem.interface_areas,
+        problem.interface_parts,
+    )
+    forces = pile_forces(state.interface_traction, normals, areas, parts)
+    head_load = sum(forces.values()) / SYMMETRY_FACTOR - pile_weight
+    return HandedOffState(
+        mesh=mesh,
+        state=state,
+        integration=FEIntegrationPoints(problem.integration_positions, problem.integration_volumes),
+        interface=FEInterfacePoints(problem.interface_positions, normals, areas, parts),
+        pile=HandedOffPile(np.array(installed.pile.tip_depth), np.array(head_load)),
+        certificate=as_json(certificate),
+        case_text=installed.case_text,
+    )
