@@ -1,0 +1,128 @@
+"""Every difference between the supported dolfinx releases, 0.5.2 and 0.9.0, and nowhere else.
+
+h5py is imported before dolfinx by the package's ``__init__``.  No dolfinx solver, boundary
+condition, lifting or mesh reader is used anywhere: those are what changes most between releases.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import basix
+import dolfinx
+import dolfinx.fem.petsc
+import numpy as np
+import ufl
+from dolfinx import fem
+from dolfinx.mesh import create_mesh
+from mpi4py import MPI
+from petsc4py import PETSc
+
+for _name in ("FFCx", "UFL"):
+    logging.getLogger(_name).setLevel(logging.WARNING)
+
+VERSION = tuple(int(part) for part in dolfinx.__version__.split(".")[:2])
+HAS_BASIX_UFL = VERSION >= (0, 6)
+"""Elements come from ``basix.ufl`` instead of classic UFL, spaces from ``fem.functionspace``."""
+
+if HAS_BASIX_UFL:
+    import basix.ufl
+
+CELL = "triangle"
+SCHEME = "default"
+
+
+@contextmanager
+def quiet_compiler() -> Iterator[None]:
+    """Keep the C compiler's command lines out of the log while forms are compiled.
+
+    With dolfinx 0.5 distutils lowers the threshold of the root logger and writes them there.
+    """
+    root = logging.getLogger()
+    level, disabled = root.level, root.manager.disable
+    logging.disable(logging.INFO)
+    try:
+        yield
+    finally:
+        logging.disable(disabled)
+        root.setLevel(level)
+
+
+def quadrature_rule(degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return reference points (n, 2) and weights (n,) of the rule that forms of ``degree`` use."""
+    points, weights = basix.make_quadrature(basix.CellType.triangle, degree)
+    return np.asarray(points).reshape(-1, 2), np.asarray(weights)
+
+
+def make_triangle_mesh(vertices: np.ndarray, triangles: np.ndarray) -> Any:
+    """Return a dolfinx mesh of straight triangles (n, 3) on ``vertices`` (m, 2) in m."""
+    comm = MPI.COMM_WORLD
+    cells = np.ascontiguousarray(triangles, dtype=np.int64)
+    if HAS_BASIX_UFL:
+        element = basix.ufl.element("Lagrange", CELL, 1, shape=(2,))
+        return create_mesh(comm, cells, vertices, ufl.Mesh(element))
+    return create_mesh(comm, cells, vertices, ufl.Mesh(ufl.VectorElement("Lagrange", CELL, 1)))
+
+
+def make_displacement_space(mesh: Any) -> Any:
+    """Return the space of continuous, piecewise quadratic displacements."""
+    if HAS_BASIX_UFL:
+        return fem.functionspace(mesh, basix.ufl.element("Lagrange", CELL, 2, shape=(2,)))
+    return fem.FunctionSpace(mesh, ufl.VectorElement("Lagrange", CELL, 2))
+
+
+def make_quadrature_space(mesh: Any, shape: tuple[int, ...], degree: int) -> Any:
+    """Return the space of values of ``shape`` at the integration points of ``degree``."""
+    if HAS_BASIX_UFL:
+        element = basix.ufl.quadrature_element(
+            CELL, value_shape=shape, degree=degree, scheme=SCHEME
+        )
+        return fem.functionspace(mesh, element)
+    if len(shape) == 1:
+        element = ufl.VectorElement("Quadrature", CELL, degree, shape[0], quad_scheme=SCHEME)
+    else:
+        element = ufl.TensorElement("Quadrature", CELL, degree, shape, quad_scheme=SCHEME)
+    return fem.FunctionSpace(mesh, element)
+
+
+def make_measure(mesh: Any, degree: int) -> Any:
+    """Return the volume measure with the integration points of ``degree``."""
+    return ufl.Measure("dx", domain=mesh, metadata={"quadrature_degree": degree})
+
+
+def evaluate(expression: Any, mesh: Any, n_cells: int) -> np.ndarray:
+    """Return the values (cell, point * component) of a compiled expression in the first cells."""
+    cells = np.arange(n_cells, dtype=np.int32)
+    values = expression.eval(mesh, cells) if HAS_BASIX_UFL else expression.eval(cells)
+    return np.asarray(values).reshape(n_cells, -1)
+
+
+def cell_blocks(space: Any, n_cells: int) -> np.ndarray:
+    """Return the blocks of unknowns (cell, n) of ``space`` in the order of its reference cell."""
+    dofs = space.dofmap.list
+    array = dofs.array if hasattr(dofs, "array") else dofs
+    return (
+        np.asarray(array).reshape(-1, space.dofmap.dof_layout.num_dofs)[:n_cells].astype(np.int64)
+    )
+
+
+def assemble_into_array(form: Any, size: int) -> np.ndarray:
+    """Return the assembled linear form as an array (size,)."""
+    vector = np.zeros(size)
+    fem.assemble_vector(vector, form)
+    return vector
+
+
+def make_matrix(form: Any) -> PETSc.Mat:
+    """Return an empty PETSc matrix with the sparsity pattern of ``form``."""
+    return fem.petsc.create_matrix(form)
+
+
+def assemble_into_matrix(matrix: PETSc.Mat, form: Any) -> None:
+    """Fill ``matrix`` with the assembled bilinear form, without boundary conditions."""
+    matrix.zeroEntries()
+    fem.petsc.assemble_matrix(matrix, form)
+    matrix.assemble()

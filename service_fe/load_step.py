@@ -1,0 +1,241 @@
+"""One load step: out-of-balance force of soil and pile, its linearisation, the accepted result.
+
+Unknowns are the increments of soil displacement u and pile motion q since the accepted state.  With
+K_ss factorised once per iteration, the unknown part q_l of the pile's motion follows from the Schur
+complement
+
+    (K_ll - K_ls K_ss^-1 K_sl) dq_l = -r_l - K_lp dq_p - K_ls K_ss^-1 (-r_s - K_sp dq_p)
+
+with one further back-substitution for each loaded motion.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from handoff.fe_state_file import FEState
+from handoff.tensor_arrays import tensors_of
+from install_mpm.constitutive.dispatch import Materials
+from service_fe.interface_forms import InterfaceForms, InterfaceResponse
+from service_fe.linear_solver import FactorisationError, TangentSolver
+from service_fe.material_map import SoilResponse, soil_response
+from service_fe.newton import StepNotConvergedError, solve_newton
+from service_fe.options import ServiceNumerics
+from service_fe.rigid_pile import PileControl
+from service_fe.soil_forms import SoilForms
+
+
+class Model(NamedTuple):
+    """The discrete model; nothing in it depends on the state of the ground."""
+
+    soil: SoilForms
+    interface: InterfaceForms
+    solver: TangentSolver
+    materials: Materials
+    interface_parameters: np.ndarray
+    """Packed parameters (n_i, 5)."""
+    is_fixed: np.ndarray
+    """Supports (node, 2) bool."""
+    pile_weight: np.ndarray
+    """Weight (3,) of the modelled half of the pile, in N, N, N m."""
+    numerics: ServiceNumerics
+
+
+class Unknowns(NamedTuple):
+    """Increments since the accepted state."""
+
+    displacement: np.ndarray
+    """Soil (node, 2) in m."""
+    motion: np.ndarray
+    """Pile (3,) in m, m, rad."""
+
+
+class Step(NamedTuple):
+    """An accepted load step."""
+
+    state: FEState
+    increment: Unknowns
+    pile_load: np.ndarray
+    """Load (3,) in N, N, N m on the modelled half of the pile at the end, besides its weight."""
+    support_reaction: np.ndarray
+    """Forces (node, 2) in N of the supports on the soil; zero at free nodes."""
+    residuals: tuple[float, ...]
+    """Relative out-of-balance force before each iteration and at the end."""
+
+    @property
+    def head_load(self) -> float:
+        """Downward load in N on the head of the modelled half."""
+        return float(-self.pile_load[1])
+
+    @property
+    def iterations(self) -> int:
+        """Newton iterations."""
+        return len(self.residuals) - 1
+
+
+class Trial(NamedTuple):
+    """The model evaluated at trial unknowns; satisfies ``newton.Trial``."""
+
+    unknowns: Unknowns
+    soil: SoilResponse
+    interface: InterfaceResponse
+    soil_residual: np.ndarray
+    """Internal less external force (node, 2) in N."""
+    pile_force: np.ndarray
+    """Internal force less weight (3,): the load that the pile needs."""
+    out_of_balance: np.ndarray
+    relative_residual: float
+
+
+class LoadStep:
+    """What is imposed in one step on a model in an accepted state.
+
+    ``support_motion`` and ``external_force`` are (node, 2) in m and N; see
+    ``ServiceProblem.solve``.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        state: FEState,
+        control: PileControl,
+        support_motion: np.ndarray,
+        external_force: np.ndarray,
+    ) -> None:
+        self.model, self.state, self.control = model, state, control
+        self.support_motion = np.where(model.is_fixed, support_motion, 0.0)
+        self.external_force = external_force
+        self._fixed_dofs = np.flatnonzero(model.is_fixed)
+        lever = np.abs(model.interface.positions).max(initial=0.0) or 1.0
+        self._pile_scale = np.array([1.0, 1.0, 1.0 / lever])
+
+    def solve(self, guess: Unknowns | None) -> Step:
+        """Return the accepted step; see ``ServiceProblem.solve`` for guess and errors."""
+        start = self._evaluate(self._first_unknowns(guess))
+        try:
+            solution = solve_newton(
+                start,
+                self._search_direction,
+                self._evaluate_along,
+                self._has_jump(start),
+                self.model.numerics.tolerance,
+                self.model.numerics.max_iterations,
+            )
+        except FactorisationError as error:
+            raise StepNotConvergedError(str(error), (start.relative_residual,)) from error
+        return self._accepted(solution.trial, solution.residuals)
+
+    def _first_unknowns(self, guess: Unknowns | None) -> Unknowns:
+        if guess is None:
+            return Unknowns(np.zeros_like(self.support_motion), np.zeros(3))
+        return Unknowns(
+            np.where(self.model.is_fixed, self.support_motion, guess.displacement),
+            np.where(self.control.is_loaded, guess.motion, self.control.motion),
+        )
+
+    def _evaluate_along(self, trial: Trial, direction: np.ndarray, length: float) -> Trial:
+        displacement, motion = trial.unknowns
+        step = length * direction
+        return self._evaluate(Unknowns(displacement + step[:-3].reshape(-1, 2), motion + step[-3:]))
+
+    def _evaluate(self, unknowns: Unknowns) -> Trial:
+        """Return the response, the out-of-balance force and its relative size."""
+        model, state = self.model, self.state
+        soil = soil_response(model.materials, state, model.soil.strain(unknowns.displacement))
+        interface = model.interface.response(
+            model.interface_parameters,
+            state.interface_traction,
+            model.interface.relative_displacement(unknowns.displacement, unknowns.motion),
+        )
+        interface_force, internal_pile_force = model.interface.forces(interface.traction)
+        soil_residual = (
+            model.soil.internal_force(soil.stress) + interface_force - self.external_force
+        )
+        pile_force = internal_pile_force - model.pile_weight
+        free_soil = np.where(model.is_fixed, 0.0, soil_residual)
+        loaded_pile = np.where(self.control.is_loaded, pile_force - self.control.load, 0.0)
+        return Trial(
+            unknowns,
+            soil,
+            interface,
+            soil_residual,
+            pile_force,
+            np.concatenate([free_soil.ravel(), loaded_pile]),
+            self._relative(free_soil, loaded_pile, soil_residual, pile_force, soil.n_failed),
+        )
+
+    def _relative(
+        self,
+        free_soil: np.ndarray,
+        loaded_pile: np.ndarray,
+        soil_residual: np.ndarray,
+        pile_force: np.ndarray,
+        n_failed: int,
+    ) -> float:
+        """Return the out-of-balance force over external force, support reaction and pile force."""
+        reference = (
+            np.linalg.norm(self.external_force)
+            + np.linalg.norm(soil_residual[self.model.is_fixed])
+            + np.linalg.norm(self._pile_scale * pile_force)
+        )
+        residual = np.linalg.norm(free_soil) + np.linalg.norm(self._pile_scale * loaded_pile)
+        if n_failed:
+            return float("nan")
+        return float(residual / reference) if residual > 0.0 else 0.0
+
+    def _jumps(self, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+        """Return what the prescribed displacements (n_dofs,) and motions (3,) still lack."""
+        displacement, motion = trial.unknowns
+        soil = np.where(self.model.is_fixed, self.support_motion - displacement, 0.0)
+        pile = np.where(self.control.is_loaded, 0.0, self.control.motion - motion)
+        return soil.ravel(), pile
+
+    def _has_jump(self, trial: Trial) -> bool:
+        return any(jump.any() for jump in self._jumps(trial))
+
+    def _search_direction(self, trial: Trial) -> np.ndarray:
+        """Return the Newton correction (n_dofs + 3,) of soil displacement and pile motion."""
+        solver, fixed = self.model.solver, self._fixed_dofs
+        stiffness = self.model.soil.stiffness(trial.soil.tangent)
+        interface = self.model.interface.stiffness(trial.interface.tangent)
+        solver.add_blocks(interface.dofs, interface.soil)
+        soil_jump, pile_jump = self._jumps(trial)
+
+        right = -trial.soil_residual.ravel() - interface.soil_pile @ pile_jump
+        if soil_jump.any():
+            right -= solver.multiply(soil_jump)
+        right[fixed] = 0.0
+        solver.factorise(fixed, diagonal=_mean_diagonal(stiffness))
+        soil = solver.solve(right) + soil_jump
+        loaded = np.flatnonzero(self.control.is_loaded)
+        if len(loaded) == 0:
+            return np.concatenate([soil, pile_jump])
+
+        columns = interface.soil_pile[:, loaded].T.copy()
+        columns[:, fixed] = 0.0
+        per_motion = np.array([solver.solve(column) for column in columns])
+        schur = interface.pile[np.ix_(loaded, loaded)] - interface.pile_soil[loaded] @ per_motion.T
+        force = self.control.load - trial.pile_force - interface.pile @ pile_jump
+        unknown = np.linalg.solve(schur, force[loaded] - interface.pile_soil[loaded] @ soil)
+        pile_jump[loaded] = unknown
+        return np.concatenate([soil - per_motion.T @ unknown, pile_jump])
+
+    def _accepted(self, trial: Trial, residuals: tuple[float, ...]) -> Step:
+        state = FEState(
+            cauchy_stress=tensors_of(trial.soil.stress),
+            elastic_strain=tensors_of(trial.soil.elastic_strain),
+            state_variables=trial.soil.state_variables,
+            material=self.state.material,
+            interface_traction=trial.interface.traction,
+            pile_displacement=self.state.pile_displacement + trial.unknowns.motion[:2],
+        )
+        reaction = np.where(self.model.is_fixed, trial.soil_residual, 0.0)
+        return Step(state, trial.unknowns, trial.pile_force, reaction, residuals)
+
+
+def _mean_diagonal(matrix: object) -> float:
+    """Return the mean of the matrix's diagonal, a neutral size for rows that are taken out."""
+    diagonal = matrix.getDiagonal()  # type: ignore[attr-defined]
+    return float(diagonal.sum() / diagonal.getSize())

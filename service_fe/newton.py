@@ -1,0 +1,142 @@
+"""Newton's method with a line search on the energy, for one load step of an elastoplastic model.
+
+For an associated law the equilibrium of a step is the minimum of a convex function, whose slope
+along the search direction d is d . r(x + alpha d): the line search looks for its zero.  That makes
+the method converge from far away, where the residual's norm need not fall.  For a non-associated
+law it is a heuristic.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Generic, NamedTuple, Protocol, TypeVar
+
+import numpy as np
+
+SLOPE_KEPT = 0.8
+"""A full step is taken if the slope at its end is at most this share of the slope at its start."""
+SLOPE_WANTED = 0.3
+"""The line search ends at this share."""
+MAX_LINE_SEARCH = 8
+SMALLEST_STEP = 1e-3
+
+
+class StepNotConvergedError(RuntimeError):
+    """A load step was not solved; ``residuals`` holds the relative residual of each iteration."""
+
+    def __init__(self, reason: str, residuals: tuple[float, ...]) -> None:
+        history = " ".join(f"{residual:.1e}" for residual in residuals)
+        super().__init__(f"{reason}; relative residuals: {history or 'none'}")
+        self.residuals = residuals
+
+
+class Trial(Protocol):
+    """A point of the iteration: the model evaluated at trial unknowns."""
+
+    @property
+    def out_of_balance(self) -> np.ndarray:
+        """Out-of-balance force of all unknowns; zero at prescribed ones."""
+
+    @property
+    def relative_residual(self) -> float:
+        """Out-of-balance force over the reference force; not finite if the model failed."""
+
+
+TrialT = TypeVar("TrialT", bound=Trial)
+
+
+class Solution(NamedTuple, Generic[TrialT]):
+    """An accepted trial and the way to it."""
+
+    trial: TrialT
+    residuals: tuple[float, ...]
+    """Relative residual before each iteration and at the end."""
+
+
+def solve_newton(
+    start: TrialT,
+    search_direction: Callable[[TrialT], np.ndarray],
+    evaluate: Callable[[TrialT, np.ndarray, float], TrialT],
+    needs_first_iteration: bool,
+    tolerance: float,
+    max_iterations: int,
+) -> Solution[TrialT]:
+    """Return the converged trial.
+
+    Parameters
+    ----------
+    start
+        Trial at the first guess.
+    search_direction
+        Newton correction of all unknowns at a trial.
+    evaluate
+        Trial at (trial, direction, step length).
+    needs_first_iteration
+        True if the start does not satisfy the prescribed motions yet: one full step is taken first.
+    tolerance, max_iterations
+        Relative residual to reach, and the most iterations.
+
+    Raises
+    ------
+    StepNotConvergedError
+        If the tolerance is not reached.
+    """
+    trial = start
+    residuals = [trial.relative_residual]
+    for iteration in range(max_iterations):
+        is_lifting = needs_first_iteration and iteration == 0
+        if residuals[-1] <= tolerance and not is_lifting:
+            return Solution(trial, tuple(residuals))
+        direction = search_direction(trial)
+        full = evaluate(trial, direction, 1.0)
+        trial = full if is_lifting else _line_search(trial, full, direction, evaluate)
+        residuals.append(trial.relative_residual)
+        if not np.isfinite(residuals[-1]):
+            raise StepNotConvergedError("a soil law could not be evaluated", tuple(residuals))
+    if residuals[-1] <= tolerance:
+        return Solution(trial, tuple(residuals))
+    raise StepNotConvergedError(
+        f"no equilibrium after {max_iterations} iterations", tuple(residuals)
+    )
+
+
+def _line_search(
+    trial: TrialT,
+    full: TrialT,
+    direction: np.ndarray,
+    evaluate: Callable[[TrialT, np.ndarray, float], TrialT],
+) -> TrialT:
+    """Return the trial at the zero of the slope from ``trial`` to ``full`` (Illinois method)."""
+    slope_start, slope_full = direction @ trial.out_of_balance, direction @ full.out_of_balance
+    is_better = full.relative_residual <= 0.5 * trial.relative_residual
+    if is_better or slope_start >= 0.0 or slope_full <= SLOPE_KEPT * abs(slope_start):
+        return full
+    low, slope_low, high, slope_high = 0.0, slope_start, 1.0, slope_full
+    best = full
+    for _ in range(MAX_LINE_SEARCH):
+        length = low - slope_low * (high - low) / (slope_high - slope_low)
+        length = max(length, SMALLEST_STEP)
+        best = evaluate(trial, direction, length)
+        slope = direction @ best.out_of_balance
+        if abs(slope) <= SLOPE_WANTED * abs(slope_start):
+            break
+        if slope > 0.0:
+            high, slope_high, slope_low = length, slope, 0.5 * slope_low
+        else:
+            low, slope_low, slope_high = length, slope, 0.5 * slope_high
+    return best
+
+
+def convergence_order(residuals: tuple[float, ...]) -> float:
+    """Return the largest order log(r_k+1 / r_k) / log(r_k / r_k-1) among the last three iterations.
+
+    NaN if there are fewer than three falling residuals.  At the very end round-off lowers the
+    observed order, therefore the largest of the last values that lie above ``1e-14`` counts.
+    """
+    usable = [value for value in residuals if value > 1e-14]
+    orders = [
+        np.log(new / middle) / np.log(middle / old)
+        for old, middle, new in zip(usable, usable[1:], usable[2:], strict=False)
+        if new < middle < old
+    ]
+    return float(max(orders[-2:])) if orders else float("nan")

@@ -1,0 +1,201 @@
+"""Finite-element model of soil, interface and rigid pile; solves one load step.
+
+Small strain from the last accepted state: a step is a function of a state and of what is imposed,
+and returns a new state.  The model satisfies ``handoff.equilibration.EquilibriumProblem``.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from handoff.equilibration import EquilibrationError, ReleasedState
+from handoff.fe_mesh import FacetTag, FEMesh
+from handoff.fe_state_file import FEState
+from handoff.geostatic import geostatic_state
+from handoff.tensor_arrays import six_vectors
+from install_mpm.constitutive import coulomb_interface, dispatch
+from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.ground import Ground, undrained_shear_strength
+from service_fe.interface_forms import InterfaceForms
+from service_fe.linear_solver import TangentSolver
+from service_fe.load_step import LoadStep, Model, Step, Unknowns
+from service_fe.newton import StepNotConvergedError
+from service_fe.options import ServiceNumerics
+from service_fe.rigid_pile import PileControl, held
+from service_fe.soil_forms import SoilForms
+
+
+def roller_supports(mesh: FEMesh) -> np.ndarray:
+    """Return where the box holds the soil, (node, 2) bool: rollers at the sides, fixed bottom."""
+    is_fixed = np.zeros((len(mesh.nodes), 2), dtype=bool)
+    for tag, axes in {
+        FacetTag.SYMMETRY: [0],
+        FacetTag.SIDE: [0],
+        FacetTag.BOTTOM: [0, 1],
+    }.items():
+        nodes = np.unique(mesh.facet_nodes[mesh.facet_tag == tag])
+        is_fixed[np.ix_(nodes, axes)] = True
+    return is_fixed
+
+
+class ServiceProblem:
+    """Soil, interface and rigid pile of the modelled half, per metre run.
+
+    Parameters
+    ----------
+    mesh
+        Mesh of the soil; its pile facets carry the interface.
+    ground
+        Unit weight and soil law.
+    interface
+        Law of the interface; its strength follows that of the undisturbed ground.
+    pile_weight
+        Weight in N of the modelled half of the pile, acting on its axis.
+    numerics
+        Tolerance and limits of Newton's method.
+    is_fixed
+        Supports (node, 2) bool; the default is ``roller_supports``.
+    """
+
+    def __init__(
+        self,
+        mesh: FEMesh,
+        ground: Ground,
+        interface: CoulombInterface,
+        pile_weight: float = 0.0,
+        numerics: ServiceNumerics | None = None,
+        is_fixed: np.ndarray | None = None,
+    ) -> None:
+        self.mesh, self.ground = mesh, ground
+        self.numerics = numerics or ServiceNumerics()
+        self._soil, self._interface = SoilForms(mesh), InterfaceForms(mesh)
+        self.gravity = self._soil.weight(ground.unit_weight)
+        strength = undrained_shear_strength(ground, self._interface.positions[:, 1])
+        self._model = Model(
+            soil=self._soil,
+            interface=self._interface,
+            solver=TangentSolver(self._soil.matrix, self._soil.row_of_dof),
+            materials=dispatch.pack([ground.soil]),
+            interface_parameters=coulomb_interface.pack(interface, strength),
+            is_fixed=roller_supports(mesh) if is_fixed is None else is_fixed,
+            pile_weight=np.array([0.0, -pile_weight, 0.0]),
+            numerics=self.numerics,
+        )
+
+    @property
+    def integration_positions(self) -> np.ndarray:
+        """Positions (n_q, 2) in m of the integration points, three to a cell, cell by cell."""
+        return self._soil.integration_positions
+
+    @property
+    def integration_volumes(self) -> np.ndarray:
+        """Integration weights (n_q,) in m^3, per metre run."""
+        return self._soil.integration_volumes
+
+    @property
+    def interface_positions(self) -> np.ndarray:
+        """Positions (n_i, 2) in m of the interface's integration points, three to a pile facet."""
+        return self._interface.positions
+
+    @property
+    def interface_areas(self) -> np.ndarray:
+        """Integration weights (n_i,) in m^2, per metre run."""
+        return self._interface.areas
+
+    @property
+    def interface_normals(self) -> np.ndarray:
+        """Exact unit normals (n_i, 2) from soil to pile."""
+        return self._interface.normals
+
+    @property
+    def interface_parts(self) -> np.ndarray:
+        """``PilePart`` (n_i,) int64 of each interface point."""
+        return self._interface.parts
+
+    def wished_in_place_state(self) -> FEState:
+        """Return the undisturbed state: geostatic stress and interface traction in balance."""
+        return geostatic_state(
+            self.ground,
+            self.integration_positions,
+            self.interface_positions,
+            self.interface_normals,
+        )
+
+    def pile_load(self, state: FEState) -> np.ndarray:
+        """Return the load (3,) in N, N, N m that holds the pile against soil and weight."""
+        _, pile_force = self._interface.forces(state.interface_traction)
+        return pile_force - self._model.pile_weight
+
+    def internal_force(self, state: FEState) -> np.ndarray:
+        """Return the nodal forces (node, 2) in N of stress and interface traction of ``state``."""
+        soil_force, _ = self._interface.forces(state.interface_traction)
+        return self._soil.internal_force(six_vectors(state.cauchy_stress)) + soil_force
+
+    def out_of_balance(self, state: FEState) -> float:
+        """Return |f_ext - f_int(state)| at the free nodes over the weight of the soil, pile held.
+
+        Raises
+        ------
+        ValueError
+            If the soil has no weight.
+        """
+        weight = self.ground.unit_weight * self.integration_volumes.sum()
+        if weight <= 0.0:
+            raise ValueError(
+                "the out-of-balance force is measured by the weight of the soil, which is zero;"
+                " give ground.unit_weight"
+            )
+        residual = self.gravity - self.internal_force(state)
+        return float(np.linalg.norm(residual[~self._model.is_fixed]) / weight)
+
+    def release(self, state: FEState, share: float) -> ReleasedState:
+        """Return the state when ``share`` (0 to 1] of the out-of-balance force has gone, pile held.
+
+        Raises
+        ------
+        EquilibrationError
+            If Newton's method does not converge.
+        """
+        external = self.gravity - (1.0 - share) * (self.gravity - self.internal_force(state))
+        try:
+            step = self.solve(state, held(), external_force=external)
+        except StepNotConvergedError as error:
+            raise EquilibrationError(
+                f"releasing {share:.0%} of the out-of-balance force failed: {error};"
+                " take more equilibration steps"
+            ) from error
+        return ReleasedState(step.state, step.increment.displacement, len(step.residuals) - 1)
+
+    def solve(
+        self,
+        state: FEState,
+        control: PileControl,
+        *,
+        support_motion: np.ndarray | None = None,
+        external_force: np.ndarray | None = None,
+        guess: Unknowns | None = None,
+    ) -> Step:
+        """Return the load step that leads from ``state`` to what is imposed.
+
+        Parameters
+        ----------
+        state
+            Accepted state; read, never written.
+        control
+            Motion or load of the pile.
+        support_motion
+            Increments (node, 2) in m at the supports, used where fixed; default zero.
+        external_force
+            Nodal forces (node, 2) in N at the end of the step; default gravity.
+        guess
+            First guess of the increments, such as those of the step before; its prescribed part is
+            replaced.
+
+        Raises
+        ------
+        StepNotConvergedError
+            If the tolerance is not reached; ``state`` is still the last accepted one.
+        """
+        motion = np.zeros_like(self.gravity) if support_motion is None else support_motion
+        external = self.gravity if external_force is None else external_force
+        return LoadStep(self._model, state, control, motion, external).solve(guess)
