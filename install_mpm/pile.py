@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from annotated_types import Ge, Gt
@@ -51,3 +51,20 @@ def tangent_of(normals: np.ndarray) -> np.ndarray:
 def buried_weight(pile: Pile, tip_depth: float) -> float:
     """Return the weight in N per metre run of the modelled half of the pile below the ground surface."""
     return pile.unit_weight * pile.half_width * tip_depth
+
+
+class PileMotion(NamedTuple):
+    """Rigid motion of the pile in a step: a translation, then a rotation about the origin (2D: about +y out of page)."""
+
+    translation: np.ndarray
+    """(dim,) in m."""
+    rotation: float = 0.0
+    """Anticlockwise in the stored axes, in rad."""
+
+
+def rigid_displacement(motion: PileMotion, position: np.ndarray) -> np.ndarray:
+    """Return the displacement (n, 2) in m of points of the pile at ``position`` (n, 2)."""
+    cosine, sine = np.cos(motion.rotation), np.sin(motion.rotation)
+    turn = np.array([[cosine, -sine], [sine, cosine]])
+    displacement: np.ndarray = position @ (turn - np.eye(2)).T + motion.translation
+    return displacement

@@ -31,6 +31,19 @@ class PileState(NamedTuple):
     ]
 
 
+class StepControl(NamedTuple):
+    """Step-size control and warm start: what a resumed run needs to go on bit-equal."""
+
+    step: Annotated[np.ndarray, Field((), "m", "current size of a load step")]
+    cuts: Annotated[np.ndarray, Field((), "", "halvings since the last accepted step", "int64")]
+    steps_since_cut: Annotated[
+        np.ndarray, Field((), "", "accepted steps since the size changed", "int64")
+    ]
+    displacement_per_step: Annotated[
+        np.ndarray, Field(("node", "dim"), "m", "first trial displacement of the next step")
+    ]
+
+
 class InstalledState(NamedTuple):
     """Everything stage 1 knows at the end of a step; also the content of a checkpoint."""
 
@@ -39,6 +52,7 @@ class InstalledState(NamedTuple):
     interface: InterfacePoints
     pile: PileState
     history: History
+    control: StepControl
     case_text: str
     kinematics: Kinematics
 
@@ -49,6 +63,7 @@ RECORDS = {
     "interface": InterfacePoints,
     "pile": PileState,
     "history": History,
+    "control": StepControl,
 }
 
 

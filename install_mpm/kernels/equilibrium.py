@@ -47,7 +47,7 @@ class CellOptions(NamedTuple):
     volumetric_term: np.ndarray
     """h_v of each cell, (n_cells,) in Pa."""
     soft_stiffness: np.ndarray
-    """Incremental stiffness of partly filled cells, (n_cells,) in Pa."""
+    """Incremental stiffness of partly filled cells times volume per integration point, (n_cells,) in N m."""
 
 
 class Scratch(NamedTuple):
@@ -336,9 +336,9 @@ def _add_volumetric_term(first, last, mean_ratio, modulus, points, scratch, forc
 
 @jit
 def _add_soft_stiffness(
-    first, last, modulus, cell_nodes, points, displacement, force, stiffness
+    first, last, stiffness_volume, cell_nodes, points, displacement, force, stiffness
 ):
-    """Add the incremental stiffness ``modulus`` grad(u) : grad(v) that holds partly filled cells together."""
+    """Add the incremental stiffness grad(u) : grad(v) that holds partly filled cells together."""
     n_nodes, dim = cell_nodes.shape[0], displacement.shape[1]
     for q in range(first, last):
         gradients = points.shape_gradients[q]
@@ -347,7 +347,7 @@ def _add_soft_stiffness(
                 value = 0.0
                 for j in range(dim):
                     value += gradients[a, j] * gradients[b, j]
-                value *= modulus * points.volume[q]
+                value *= stiffness_volume
                 for i in range(dim):
                     stiffness[a, i, b, i] += value
                     force[a, i] += value * displacement[cell_nodes[b], i]

@@ -1,0 +1,193 @@
+"""Equilibrium of one step on the background mesh: residual and tangent for a trial displacement."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from install_mpm.assembly import SparsityPattern, constrain, scatter_force, scatter_stiffness
+from install_mpm.background_mesh import BackgroundMesh
+from install_mpm.cells import ReferenceCell
+from install_mpm.constitutive.dispatch import Materials
+from install_mpm.constitutive.elastic import BULK, SHEAR
+from install_mpm.conventions import GRAVITY
+from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
+from install_mpm.interface import InterfaceElements, InterfacePoints, frames
+from install_mpm.kernels.carry import body_force
+from install_mpm.kernels.equilibrium import CellOptions, evaluate_cells
+from install_mpm.kernels.interface_force import evaluate_interface
+from install_mpm.linear_solvers import Solve
+from install_mpm.newton import Evaluation, NewtonResult, solve_newton
+from install_mpm.options import Numerics
+from install_mpm.pile import PileMotion, rigid_displacement
+
+
+class Discretisation(NamedTuple):
+    """What stays the same in every step of a run."""
+
+    cell: ReferenceCell
+    elements: InterfaceElements
+    materials: Materials
+    pattern: SparsityPattern
+    solve: Solve
+    numerics: Numerics
+    has_mean_dilatation: bool = True
+    is_finite_strain: bool = True
+
+
+class Prescribed(NamedTuple):
+    """Prescribed nodal displacements of a step: supports, and whatever else is driven."""
+
+    is_prescribed: np.ndarray
+    """(n_nodes, dim) bool."""
+    displacement: np.ndarray
+    """(n_nodes, dim) in m."""
+
+
+class StepEquilibrium(NamedTuple):
+    """Solution of a step; of use only if ``newton.is_converged``."""
+
+    newton: NewtonResult
+    displacement: np.ndarray
+    """Nodal displacement increment, (n_nodes, dim) in m."""
+    trial: Trial
+    """State at the integration points at the end of the step."""
+    traction: np.ndarray
+    """Interface traction at the end of the step, local axes, (n_interface_points, dim) in Pa."""
+    reaction: np.ndarray
+    """Support force at prescribed dofs, zero elsewhere, (n_nodes, dim) in N."""
+
+
+def youngs_modulus(materials: Materials) -> np.ndarray:
+    """Return Young's modulus (n_materials,) in Pa of the packed materials."""
+    bulk, shear = materials.parameters[:, BULK], materials.parameters[:, SHEAR]
+    modulus: np.ndarray = 9.0 * bulk * shear / (3.0 * bulk + shear)
+    return modulus
+
+
+def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisation) -> CellOptions:
+    """Return the stiffnesses that act within a step only: volumetric term and soft partly filled cells."""
+    n_per_cell = len(model.cell.volume_shares)
+    modulus = youngs_modulus(model.materials)[points.material[points.cell_start[:-1]]]
+    missing = np.where(fill.is_interior, 0.0, np.maximum(1.0 - fill.share, 0.0))
+    return CellOptions(
+        is_finite_strain=model.is_finite_strain,
+        has_mean_dilatation=model.has_mean_dilatation,
+        volumetric_term=model.numerics.volumetric_term * modulus,
+        soft_stiffness=model.numerics.soft_stiffness
+        * modulus
+        * missing
+        * fill.cell_volume
+        / n_per_cell,
+    )
+
+
+def find_equilibrium(
+    mesh: BackgroundMesh,
+    points: IntegrationPoints,
+    fill: CellFill,
+    interface: InterfacePoints,
+    motion: PileMotion,
+    prescribed: Prescribed,
+    start: np.ndarray,
+    model: Discretisation,
+) -> StepEquilibrium:
+    """Return the equilibrium of soil, interface and pile motion at the end of the step (paper, section 2.1, phase ii).
+
+    ``start`` (n_nodes, dim) is the first trial displacement in m.
+    """
+    system = _StepSystem(mesh, points, fill, interface, motion, prescribed, model)
+    first = np.where(prescribed.is_prescribed, prescribed.displacement, start)
+    first = np.where(system.is_free | prescribed.is_prescribed, first, 0.0)
+    newton = solve_newton(
+        system.evaluate,
+        model.solve,
+        first.ravel(),
+        model.numerics.tolerance,
+        model.numerics.max_iterations,
+    )
+    reaction = np.where(prescribed.is_prescribed, system.out_of_balance, 0.0)
+    return StepEquilibrium(
+        newton,
+        newton.solution.reshape(first.shape),
+        system.trial,
+        system.traction,
+        reaction,
+    )
+
+
+class _StepSystem:
+    """Work arrays of a step, filled by every evaluation."""
+
+    def __init__(
+        self,
+        mesh: BackgroundMesh,
+        points: IntegrationPoints,
+        fill: CellFill,
+        interface: InterfacePoints,
+        motion: PileMotion,
+        prescribed: Prescribed,
+        model: Discretisation,
+    ) -> None:
+        n_nodes, dim = mesh.nodes.shape
+        n_cells, n_cell_nodes = mesh.cell_nodes.shape
+        n_elements, n_element_nodes = model.elements.nodes.shape
+        self.mesh, self.points, self.fill, self.model = mesh, points, fill, model
+        self.interface, self.is_prescribed = interface, prescribed.is_prescribed
+        self.options = cell_options(fill, points, model)
+        self.pile_displacement = rigid_displacement(motion, interface.position)
+        self.mid_frame = frames(interface.normal, motion.rotation / 2.0)
+        self.end_frame = frames(interface.normal, motion.rotation)
+        self.trial = empty_trial(points)
+        self.traction = np.zeros_like(interface.traction)
+        self.cell_force = np.zeros((n_cells, n_cell_nodes, dim))
+        self.cell_stiffness = np.zeros((n_cells, n_cell_nodes, dim, n_cell_nodes, dim))
+        self.element_force = np.zeros((n_elements, n_element_nodes, dim))
+        self.element_stiffness = np.zeros((n_elements, n_element_nodes, dim, n_element_nodes, dim))
+        self.external = np.zeros((n_nodes, dim))
+        self.out_of_balance = np.zeros((n_nodes, dim))
+        body_force(model.cell.cell_type, mesh.cell_nodes, points, GRAVITY, self.external)
+        is_held = np.zeros(n_nodes, dtype=bool)
+        is_held[mesh.cell_nodes[fill.is_active]] = True
+        self.is_free = is_held[:, None] & ~prescribed.is_prescribed
+
+    def evaluate(self, displacement: np.ndarray) -> Evaluation:
+        """Return residual and tangent at the trial ``displacement`` (n_dofs,)."""
+        nodal = displacement.reshape(self.external.shape)
+        self._evaluate_blocks(nodal)
+        is_admissible = not self.trial.status.any()
+        pattern = self.model.pattern
+        internal, interface = np.zeros(nodal.size), np.zeros(nodal.size)
+        values = np.zeros(len(pattern.indices))
+        families = zip(
+            (self.cell_force, self.element_force),
+            (self.cell_stiffness, self.element_stiffness),
+            (internal, interface),
+            pattern.dofs,
+            pattern.slots,
+            strict=True,
+        )
+        for force, stiffness, total, dofs, slots in families:
+            scatter_force(force.reshape(dofs.shape), dofs, total)
+            scatter_stiffness(stiffness.reshape(slots.shape), slots, values)
+        constrain(pattern.indptr, pattern.indices, self.is_free.ravel(), values)
+        out_of_balance = internal + interface - self.external.ravel()
+        self.out_of_balance = out_of_balance.reshape(nodal.shape)
+        supports = out_of_balance[self.is_prescribed.ravel()]
+        reference = sum(map(np.linalg.norm, (self.external, supports, interface)))
+        residual = np.where(self.is_free.ravel(), out_of_balance, 0.0)
+        return Evaluation(residual, values, float(reference) or 1.0, is_admissible)
+
+    def _evaluate_blocks(self, nodal: np.ndarray) -> None:
+        """Fill force and stiffness of all cells and interface elements."""
+        evaluate_cells(
+            self.mesh.cell_nodes, self.fill.is_active, self.points, nodal, self.model.materials,
+            self.options, self.cell_force, self.cell_stiffness, self.trial,
+        )  # fmt: skip
+        evaluate_interface(
+            self.model.elements.nodes, self.model.elements.shape_values, self.interface.is_active,
+            self.interface.area, self.interface.parameters, self.interface.traction, self.mid_frame,
+            self.end_frame, self.pile_displacement, nodal, self.element_force,
+            self.element_stiffness, self.traction,
+        )  # fmt: skip

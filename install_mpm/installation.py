@@ -1,0 +1,308 @@
+"""Installation of a pile: geostatic start, load steps with cutting, observers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from install_mpm import pile_surface
+from install_mpm.assembly import sparsity_pattern
+from install_mpm.background_mesh import BackgroundMesh, cell_quality
+from install_mpm.carriers import GeostaticGradient
+from install_mpm.cells import CellType, reference_cell
+from install_mpm.constitutive import dispatch
+from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.conventions import Kinematics
+from install_mpm.equilibrium import Discretisation, Prescribed
+from install_mpm.ground import Ground
+from install_mpm.history import append, empty_history
+from install_mpm.interface import reaction
+from install_mpm.linear_solvers import SOLVERS
+from install_mpm.mesh_generation import generate_background_mesh
+from install_mpm.mesh_motion import translate
+from install_mpm.newton import convergence_order
+from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
+from install_mpm.pile import SYMMETRY_FACTOR, Pile, PileMotion, PilePart, buried_weight
+from install_mpm.seeding import geostatic_gradient, seed_points
+from install_mpm.state_file import InstalledState, PileState, StepControl
+from install_mpm.step import StepResult, step
+
+ON_BOUNDARY = 1e-9
+"""Distance in m within which a node counts as lying on a side of the box."""
+
+STEPS_BEFORE_GROWTH = 4
+"""Steps that must converge after a cut before the step is doubled again."""
+
+
+class NotConvergedError(RuntimeError):
+    """A step did not converge even after the last permitted cut; the message says where."""
+
+
+class InstallationProgress(NamedTuple):
+    """What an observer is told after each accepted step."""
+
+    load_step: int
+    penetration: float
+    target: float
+    crowd_force: float
+    iterations: int
+    cuts: int
+
+
+class Installation(NamedTuple):
+    """The problem: everything that does not change while the pile goes down."""
+
+    ground: Ground
+    pile: Pile
+    law: CoulombInterface
+    box: Box
+    rigid_zone: float
+    programme: InstallationProgramme
+    numerics: Numerics
+    model: Discretisation
+    parts: np.ndarray
+    supports: np.ndarray
+    gradient: GeostaticGradient
+
+
+Observer = Callable[[InstalledState, InstallationProgress], None]
+
+
+def install(
+    ground: Ground,
+    pile: Pile,
+    law: CoulombInterface,
+    box: Box,
+    mesh_options: BackgroundMeshOptions,
+    programme: InstallationProgramme,
+    numerics: Numerics,
+    case_text: str,
+    *,
+    resume_from: InstalledState | None = None,
+    observe: Observer = lambda state, progress: None,
+) -> InstalledState:
+    """Return the ground and the pile after installation.
+
+    The first step moves nothing: it shows that the geostatic start is in equilibrium.  ``resume_from`` is a state of
+    the same case that an observer was given; the result is then bit-equal to that of an uninterrupted run.
+
+    Raises
+    ------
+    NotConvergedError
+        If a step does not converge after ``numerics.max_cuts`` halvings.
+    """
+    if resume_from is None:
+        mesh = generate_background_mesh(pile, box, mesh_options)
+    else:
+        mesh = resume_from.background_mesh
+    problem = _set_up(ground, pile, law, box, mesh_options, programme, numerics, mesh)
+    if resume_from is None:
+        state = _geostatic_state(problem, mesh, mesh_options.points_per_direction, case_text)
+        state, accepted = _advance(problem, state, 0.0)
+        observe(state, _progress(problem, state))
+    else:
+        state = resume_from
+    while float(state.pile.penetration) < programme.penetration - ON_BOUNDARY:
+        state, accepted = _advance(problem, state, _next_step(problem, state))
+        if accepted:
+            observe(state, _progress(problem, state))
+    return state
+
+
+def _set_up(
+    ground: Ground,
+    pile: Pile,
+    law: CoulombInterface,
+    box: Box,
+    mesh_options: BackgroundMeshOptions,
+    programme: InstallationProgramme,
+    numerics: Numerics,
+    mesh: BackgroundMesh,
+) -> Installation:
+    """Return the problem on a given mesh: interface, sparsity, solver and supports."""
+    elements, parts = pile_surface.pile_elements(mesh, pile)
+    pattern = sparsity_pattern([mesh.cell_nodes, elements.nodes], len(mesh.nodes), 2)
+    model = Discretisation(
+        cell=reference_cell(CellType.TRI6),
+        elements=elements,
+        materials=dispatch.pack([ground.soil]),
+        pattern=pattern,
+        solve=SOLVERS[numerics.linear_solver](pattern),
+        numerics=numerics,
+    )
+    return Installation(
+        ground, pile, law, box, mesh_options.rigid_zone, programme, numerics, model, parts,
+        supports=_supports(mesh, box),
+        gradient=geostatic_gradient(ground, vertical=1),
+    )  # fmt: skip
+
+
+def _supports(mesh: BackgroundMesh, box: Box) -> np.ndarray:
+    """Return which dofs are held, (n_nodes, 2) bool: rollers on symmetry axis and side, fixed bottom."""
+    x, z = mesh.reference_nodes.T
+    is_held = np.zeros(mesh.nodes.shape, dtype=bool)
+    is_held[:, 0] = (np.abs(x) < ON_BOUNDARY) | (np.abs(x - box.width) < ON_BOUNDARY)
+    is_held[np.abs(z + box.depth) < ON_BOUNDARY] = True
+    return is_held
+
+
+def _geostatic_state(
+    problem: Installation, mesh: BackgroundMesh, per_direction: int, case_text: str
+) -> InstalledState:
+    """Return the undisturbed ground with the pile wished in place at its starting depth."""
+    elements = problem.model.elements
+    interface = pile_surface.initial_interface(
+        elements, problem.parts, mesh, problem.ground, problem.law
+    )
+    return InstalledState(
+        material_points=seed_points(mesh, problem.model.cell, problem.ground, per_direction),
+        background_mesh=mesh,
+        interface=interface,
+        pile=PileState(
+            np.array(0.0), np.array(0.0), np.array(problem.pile.embedment), np.zeros(2)
+        ),
+        history=empty_history(),
+        control=StepControl(
+            np.array(problem.programme.step), np.array(0), np.array(0), np.zeros_like(mesh.nodes)
+        ),
+        case_text=case_text,
+        kinematics=Kinematics.PLANE_STRAIN,
+    )
+
+
+def _next_step(problem: Installation, state: InstalledState) -> float:
+    """Return the advance of the next step in m: the current step size, or what is left."""
+    left = problem.programme.penetration - float(state.pile.penetration)
+    size = float(state.control.step)
+    return left if left < size * (1.0 + 1e-9) else size
+
+
+def _advance(
+    problem: Installation, state: InstalledState, advance: float
+) -> tuple[InstalledState, bool]:
+    """Try one step; return the new state, or the old one with half the step size, and whether it was accepted."""
+    control = state.control
+    penetration = float(state.pile.penetration) + advance
+    scale = advance / float(control.step) if advance else 0.0
+    result = step(
+        state.material_points,
+        state.background_mesh,
+        state.interface,
+        PileMotion(np.array([0.0, -advance])),
+        Prescribed(problem.supports, np.zeros_like(state.background_mesh.nodes)),
+        start=scale * control.displacement_per_step,
+        move_mesh=lambda mesh: translate(
+            mesh,
+            penetration,
+            -problem.pile.embedment,
+            (-problem.box.depth, problem.box.headroom),
+            problem.rigid_zone,
+        ),
+        model=problem.model,
+        gradient=problem.gradient,
+    )
+    if not result.is_converged:
+        return state._replace(control=_cut(problem, state, penetration, result)), False
+    return _accept(problem, state, advance, result), True
+
+
+def _cut(
+    problem: Installation, state: InstalledState, penetration: float, result: StepResult
+) -> StepControl:
+    """Return the control for a second try with half the step.
+
+    Raises
+    ------
+    NotConvergedError
+        If the step was halved too often already.
+    """
+    control = state.control
+    if int(control.cuts) >= problem.numerics.max_cuts:
+        raise NotConvergedError(
+            f"installation: the step to penetration {penetration:.4f} m does not converge after "
+            f"{int(control.cuts)} halvings (last relative residual "
+            f"{result.equilibrium.newton.residuals[-1]:.1e}); use a smaller installation.step or a finer background mesh"
+        )
+    return control._replace(
+        step=control.step / 2.0,
+        cuts=control.cuts + 1,
+        steps_since_cut=np.array(0),
+        displacement_per_step=control.displacement_per_step / 2.0,
+    )
+
+
+def _accept(
+    problem: Installation, state: InstalledState, advance: float, result: StepResult
+) -> InstalledState:
+    """Return the state after a converged step, with its row of the history."""
+    control, numerics = state.control, problem.numerics
+    interface = pile_surface.follow(
+        result.interface, problem.model.elements, result.mesh, problem.ground, problem.law
+    )
+    penetration = float(state.pile.penetration) + advance
+    tip_depth = problem.pile.embedment + penetration
+    force = reaction(result.interface)
+    size, displacement = control.step, control.displacement_per_step
+    if advance:
+        displacement = result.equilibrium.displacement * (float(size) / advance)
+    steps_since_cut = control.steps_since_cut + 1
+    if steps_since_cut >= STEPS_BEFORE_GROWTH and size < problem.programme.step:
+        grown = np.minimum(2.0 * size, problem.programme.step)
+        displacement, size = displacement * (grown / size), grown
+        steps_since_cut = np.array(0)
+    return InstalledState(
+        material_points=result.points,
+        background_mesh=result.mesh,
+        interface=interface,
+        pile=PileState(
+            np.array(penetration), np.array(0.0), np.array(tip_depth), force
+        ),
+        history=append(
+            state.history, _history_row(problem, state, result, penetration, tip_depth)
+        ),
+        control=StepControl(np.array(size), np.array(0), steps_since_cut, displacement),
+        case_text=state.case_text,
+        kinematics=state.kinematics,
+    )
+
+
+def _history_row(
+    problem: Installation,
+    state: InstalledState,
+    result: StepResult,
+    penetration: float,
+    tip_depth: float,
+) -> dict[str, object]:
+    """Return the history of an accepted step; forces are for the whole pile."""
+    newton = result.equilibrium.newton
+    on_base = result.interface.part == PilePart.BASE
+    base = reaction(result.interface, on_base)[1]
+    shaft = reaction(result.interface, ~on_base)[1]
+    return {
+        "penetration": penetration,
+        "crowd_force": SYMMETRY_FACTOR * (base + shaft - buried_weight(problem.pile, tip_depth)),
+        "base_force": SYMMETRY_FACTOR * base,
+        "shaft_force": SYMMETRY_FACTOR * shaft,
+        "iterations": len(newton.residuals) - 1,
+        "residual": newton.residuals[-1],
+        "convergence_order": convergence_order(newton.residuals),
+        "cuts": int(state.control.cuts),
+        "smallest_cell_quality": cell_quality(result.mesh).min(),
+        "residual_history": newton.residuals,
+        **result.counts._asdict(),
+    }
+
+
+def _progress(problem: Installation, state: InstalledState) -> InstallationProgress:
+    """Return what the observer is told of the last step."""
+    history = state.history
+    return InstallationProgress(
+        load_step=len(history.penetration) - 1,
+        penetration=float(state.pile.penetration),
+        target=problem.programme.penetration,
+        crowd_force=float(history.crowd_force[-1]),
+        iterations=int(history.iterations[-1]),
+        cuts=int(history.cuts[-1]),
+    )

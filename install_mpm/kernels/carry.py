@@ -1,0 +1,222 @@
+"""From material points to integration points and back: the points carry the state between meshes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from install_mpm._jit import jit, parallel_jit, prange
+from install_mpm.cells import shape_functions
+from install_mpm.constitutive.dispatch import update_stress
+from install_mpm.constitutive.hencky import determinant, trial_log_strain
+from install_mpm.constitutive.mandel import from_mandel, to_mandel
+from install_mpm.kernels.equilibrium import CHUNKS, SMALLEST_VOLUME_RATIO, scale_volume
+from install_mpm.kernels.gradients import displacement_gradient, shape_gradients
+
+
+@jit
+def nearest_integration_point(reference_coordinates, integration_coordinates):
+    """Return the index of the integration point whose sub-region holds the reference coordinates.
+
+    In a simplex the nearest one in barycentric distance belongs to the vertex with the largest coordinate.
+    """
+    nearest, nearest_distance = 0, 1e300
+    dim = reference_coordinates.shape[0]
+    for q in range(integration_coordinates.shape[0]):
+        distance = 0.0
+        total = 0.0
+        for i in range(dim):
+            difference = reference_coordinates[i] - integration_coordinates[q, i]
+            distance += difference * difference
+            total += difference
+        distance += total * total  # the dependent barycentric coordinate
+        if distance < nearest_distance:
+            nearest, nearest_distance = q, distance
+    return nearest
+
+
+@jit
+def sum_sub_regions(
+    point_order, cell_start, points, vertical, strain_gradient, integration_coordinates,
+    integration_height, totals,
+):  # fmt: skip
+    """Add up the material points of every sub-region into ``totals``.
+
+    ``totals`` is a tuple of arrays over (cell, integration point): volume, mass, volume-weighted ln J, elastic strain
+    (3, 3) and state variables, and the material of the largest contribution.  The strain is extrapolated from the
+    point to the integration point with the geostatic gradient ``strain_gradient`` (n_materials, 3, 3) per metre of
+    height, so that geostatic ground is carried without error.
+    """
+    volume, mass, log_ratio, strain, state, material = totals
+    for c in range(cell_start.shape[0] - 1):
+        for entry in range(cell_start[c], cell_start[c + 1]):
+            p = point_order[entry]
+            q = nearest_integration_point(points.reference_coordinates[p], integration_coordinates)
+            weight = points.volume[p]
+            volume[c, q] += weight
+            mass[c, q] += points.mass[p]
+            log_ratio[c, q] += weight * np.log(points.volume_ratio[p])
+            rise = integration_height[c, q] - points.position[p, vertical]
+            row = points.material[p]
+            for i in range(3):
+                for j in range(3):
+                    strain[c, q, i, j] += weight * (
+                        points.elastic_log_strain[p, i, j] + strain_gradient[row, i, j] * rise
+                    )
+            for s in range(state.shape[2]):
+                state[c, q, s] += weight * points.state_variables[p, s]
+            material[c, q] = row
+
+
+@jit
+def vertex_fill(cell_nodes, n_vertices, cell_volume, point_order, cell_start, points, filled, capacity):
+    """Fill volume of soil ``filled`` (n_nodes,) and of cells ``capacity`` (n_nodes,) that belong to each vertex.
+
+    The linear functions of the vertices share out both, because quadratic ones are negative in places.
+    """
+    for c in range(cell_nodes.shape[0]):
+        for v in range(n_vertices):
+            capacity[cell_nodes[c, v]] += cell_volume[c] / n_vertices
+        for entry in range(cell_start[c], cell_start[c + 1]):
+            p = point_order[entry]
+            last = 1.0
+            for v in range(1, n_vertices):
+                share = points.reference_coordinates[p, v - 1]
+                last -= share
+                filled[cell_nodes[c, v]] += points.volume[p] * share
+            filled[cell_nodes[c, 0]] += points.volume[p] * last
+
+
+@parallel_jit
+def cell_geometry(cell_type, cell_nodes, nodes, integration_coordinates, shares, gradients, volume, height):
+    """Fill shape ``gradients`` (n_cells, n_ip, n_nodes, dim), cell ``volume`` and ``height`` of the integration points."""
+    n_cells, n_nodes = cell_nodes.shape
+    dim = nodes.shape[1]
+    for chunk in prange(CHUNKS):
+        reference = np.empty((n_nodes, dim))
+        values = np.empty(n_nodes)
+        for c in range(chunk * n_cells // CHUNKS, (chunk + 1) * n_cells // CHUNKS):
+            volume[c] = 0.0
+            for q in range(integration_coordinates.shape[0]):
+                xi = integration_coordinates[q]
+                jacobian = shape_gradients(
+                    cell_type, xi, nodes, cell_nodes[c], reference, gradients[c, q]
+                )
+                reference_volume = 4.0 if n_nodes == 4 else 0.5
+                volume[c] += jacobian * shares[q] * reference_volume
+                shape_functions(cell_type, xi, values)
+                height[c, q] = 0.0
+                for a in range(n_nodes):
+                    height[c, q] += values[a] * nodes[cell_nodes[c, a], dim - 1]
+
+
+@jit
+def body_force(cell_type, cell_nodes, points, gravity, force):
+    """Add the weight of the integration points to the nodal ``force`` (n_nodes, dim) in N, downward."""
+    n_nodes = cell_nodes.shape[1]
+    vertical = force.shape[1] - 1
+    values = np.empty(n_nodes)
+    for c in range(cell_nodes.shape[0]):
+        for q in range(points.cell_start[c], points.cell_start[c + 1]):
+            weight = points.density[q] * points.volume[q] * gravity
+            if weight == 0.0:
+                continue
+            shape_functions(cell_type, points.reference_coordinates[q], values)
+            for a in range(n_nodes):
+                force[cell_nodes[c, a], vertical] -= weight * values[a]
+
+
+@parallel_jit
+def carry_points(
+    cell_type, cell_nodes, nodes, displacement, cell_volume_ratio, point_order, cell_start,
+    points, materials, strain_gradient, has_mean_dilatation, updated, status,
+):  # fmt: skip
+    """Fill ``updated`` (MaterialPoints) with the state after the step; ``status`` (n_cells,) is 0 where it is sound.
+
+    Every point deforms with its own dF, scaled to the volume change of its cell.  The volumetric part of the trial
+    strains of a cell is then replaced by their mean (plus the geostatic gradient), because a pressure that the
+    integration points do not see would otherwise stay with the points for ever.
+    """
+    n_cells, n_nodes = cell_nodes.shape
+    dim = nodes.shape[1]
+    for chunk in prange(CHUNKS):
+        reference = np.empty((n_nodes, dim))
+        gradients = np.empty((n_nodes, dim))
+        values = np.empty(n_nodes)
+        increment = np.empty((3, 3))
+        vectors = np.empty((3, 3))
+        stretches, trial, stress, strain = np.empty(3), np.empty(6), np.empty(6), np.empty(6)
+        tangent = np.empty((6, 6))
+        for c in range(chunk * n_cells // CHUNKS, (chunk + 1) * n_cells // CHUNKS):
+            status[c] = 0
+            first, last = cell_start[c], cell_start[c + 1]
+            for entry in range(first, last):
+                p = point_order[entry]
+                xi = points.reference_coordinates[p]
+                shape_gradients(cell_type, xi, nodes, cell_nodes[c], reference, gradients)
+                displacement_gradient(displacement, cell_nodes[c], gradients, increment)
+                for i in range(3):
+                    increment[i, i] += 1.0
+                ratio = determinant(increment)
+                if ratio < SMALLEST_VOLUME_RATIO:
+                    status[c] = 1
+                    break
+                if has_mean_dilatation:
+                    scale_volume(increment, cell_volume_ratio[c] / ratio, dim)
+                    ratio = cell_volume_ratio[c]
+                shape_functions(cell_type, xi, values)
+                for i in range(dim):
+                    motion = 0.0
+                    for a in range(n_nodes):
+                        motion += values[a] * displacement[cell_nodes[c, a], i]
+                    updated.position[p, i] = points.position[p, i] + motion
+                    updated.displacement[p, i] = points.displacement[p, i] + motion
+                updated.volume[p] = points.volume[p] * ratio
+                updated.volume_ratio[p] = points.volume_ratio[p] * ratio
+                trial_log_strain(increment, points.elastic_log_strain[p], trial, stretches, vectors)
+                from_mandel(trial, updated.elastic_log_strain[p])
+            if status[c] == 0 and has_mean_dilatation:
+                _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated)
+            for entry in range(first, last):
+                if status[c] != 0:
+                    break
+                p = point_order[entry]
+                status[c] = _return_to_yield_surface(
+                    p, points, materials, trial, stress, strain, tangent, updated
+                )
+
+
+@jit
+def _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated):
+    """Give all points of a cell its mean volumetric trial strain, plus the geostatic gradient over height."""
+    vertical = updated.position.shape[1] - 1
+    volume = mean = height = 0.0
+    for entry in range(first, last):
+        p = point_order[entry]
+        weight = updated.volume[p]
+        strain = updated.elastic_log_strain[p]
+        volume += weight
+        mean += weight * (strain[0, 0] + strain[1, 1] + strain[2, 2])
+        height += weight * updated.position[p, vertical]
+    for entry in range(first, last):
+        p = point_order[entry]
+        strain = updated.elastic_log_strain[p]
+        gradient = strain_gradient[updated.material[p]]
+        slope = gradient[0, 0] + gradient[1, 1] + gradient[2, 2]
+        target = mean / volume + slope * (updated.position[p, vertical] - height / volume)
+        correction = (target - strain[0, 0] - strain[1, 1] - strain[2, 2]) / 3.0
+        for i in range(3):
+            strain[i, i] += correction
+
+
+@jit
+def _return_to_yield_surface(p, points, materials, trial, stress, strain, tangent, updated):
+    """Evaluate the law of point ``p`` from the trial strain that ``updated`` holds; return its status."""
+    row = points.material[p]
+    to_mandel(updated.elastic_log_strain[p], trial)
+    status = update_stress(
+        materials.model[row], trial, materials.parameters[row], points.state_variables[p],
+        stress, strain, updated.state_variables[p], tangent,
+    )  # fmt: skip
+    from_mandel(strain, updated.elastic_log_strain[p])
+    from_mandel(stress, updated.kirchhoff_stress[p])
+    return status

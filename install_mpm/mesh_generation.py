@@ -1,0 +1,99 @@
+"""Background mesh of a pile in a box, by gmsh."""
+
+from __future__ import annotations
+
+import gmsh
+import numpy as np
+
+from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
+from install_mpm.options import BackgroundMeshOptions, Box
+from install_mpm.pile import Pile
+
+GMSH_TRIANGLE_6 = 9
+FINE_REACH = 1.0
+"""The size at the pile tip is kept within this many half-widths of the base, and along the shaft at half that."""
+
+
+def generate_background_mesh(pile: Pile, box: Box, options: BackgroundMeshOptions) -> BackgroundMesh:
+    """Return a mesh of 6-node triangles conforming to the pile and to the level ground surface.
+
+    It covers the ground and the headroom above it, and is finest at the base and along the shaft of the pile.
+    """
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", 1)  # more threads: another mesh in every run
+        gmsh.model.add("background")
+        _draw(pile, box)
+        _set_sizes(pile, options)
+        gmsh.model.mesh.generate(2)
+        gmsh.model.mesh.setOrder(2)
+        return _collect()
+    finally:
+        gmsh.finalize()
+
+
+def _draw(pile: Pile, box: Box) -> None:
+    """Draw soil and headroom as two surfaces that share the ground line."""
+    geo = gmsh.model.geo
+    corners = [
+        (0.0, -box.depth),
+        (box.width, -box.depth),
+        (box.width, 0.0),
+        (pile.half_width, 0.0),
+        (pile.half_width, -pile.embedment),
+        (0.0, -pile.embedment),
+    ]
+    points = [geo.addPoint(x, z, 0.0) for x, z in corners]
+    soil_lines = [
+        geo.addLine(start, end)
+        for start, end in zip(points, points[1:] + points[:1], strict=True)
+    ]
+    above = [geo.addPoint(x, box.headroom, 0.0) for x in (box.width, pile.half_width)]
+    sides = [
+        geo.addLine(points[2], above[0]),
+        geo.addLine(above[0], above[1]),
+        geo.addLine(above[1], points[3]),
+    ]
+    geo.addPlaneSurface([geo.addCurveLoop(soil_lines)])
+    geo.addPlaneSurface([geo.addCurveLoop([-soil_lines[2], *sides])])
+    geo.synchronize()
+    for name, lines in (("base", [soil_lines[4]]), ("shaft", [soil_lines[3], sides[2]])):
+        gmsh.model.setPhysicalName(1, gmsh.model.addPhysicalGroup(1, lines), name)
+
+
+def _set_sizes(pile: Pile, options: BackgroundMeshOptions) -> None:
+    """Grade the cell size from the pile to the far field."""
+    field = gmsh.model.mesh.field
+    lines = {
+        gmsh.model.getPhysicalName(1, tag): gmsh.model.getEntitiesForPhysicalGroup(1, tag)
+        for _, tag in gmsh.model.getPhysicalGroups(1)
+    }
+    thresholds = []
+    for name, coarser, reach in (("base", 1.0, FINE_REACH), ("shaft", 1.5, FINE_REACH / 2)):
+        distance = field.add("Distance")
+        field.setNumbers(distance, "CurvesList", list(lines[name]))
+        field.setNumber(distance, "Sampling", 200)
+        threshold = field.add("Threshold")
+        field.setNumber(threshold, "InField", distance)
+        field.setNumber(threshold, "SizeMin", min(coarser * options.size_at_pile, options.size_far))
+        field.setNumber(threshold, "SizeMax", options.size_far)
+        field.setNumber(threshold, "DistMin", reach * pile.half_width)
+        field.setNumber(threshold, "DistMax", 4.0 * pile.half_width + 4.0 * options.size_far)
+        thresholds.append(threshold)
+    smallest = field.add("Min")
+    field.setNumbers(smallest, "FieldsList", thresholds)
+    field.setAsBackgroundMesh(smallest)
+    for option in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
+        gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
+
+
+def _collect() -> BackgroundMesh:
+    """Return the mesh that gmsh holds, with nodes numbered as used."""
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    _, cells = gmsh.model.mesh.getElementsByType(GMSH_TRIANGLE_6)
+    used, cell_nodes = np.unique(cells, return_inverse=True)
+    position = np.empty(int(tags.max()) + 1, dtype=np.int64)
+    position[tags] = np.arange(len(tags))
+    nodes = coordinates.reshape(-1, 3)[position[used], :2]
+    return make_background_mesh(nodes, cell_nodes.reshape(-1, 6))

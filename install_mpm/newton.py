@@ -1,0 +1,115 @@
+"""Newton's method with backtracking: knows a residual, a tangent and a linear solver, and nothing of soil.
+
+Order of evaluation: residual and tangent at the start; then solve, step, and evaluate again, halving the step while the
+trial is inadmissible or the residual grows.  The last *accepted* iterate is returned; nothing is kept on failure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from install_mpm.linear_solvers import SingularMatrixError, Solve
+
+BACKTRACKS = 6
+"""Halvings of a Newton step before the iteration goes on with the best trial found."""
+
+GROWTH_ALLOWED = 1.0
+"""A full step is taken while the residual does not grow beyond this factor."""
+
+ROUND_OFF = 1e-13
+"""Relative residuals below this are round-off and say nothing about the order of convergence."""
+
+
+class Evaluation(NamedTuple):
+    """Residual, tangent and the force they are measured against, for one trial."""
+
+    residual: np.ndarray
+    """Out-of-balance force of the free dofs, zero elsewhere, (n_dofs,) in N."""
+    tangent: np.ndarray
+    """Values of the constrained tangent in the order of the sparsity pattern."""
+    reference: float
+    """Force in N that the residual is measured against."""
+    is_admissible: bool
+    """False if a cell collapsed or a law failed."""
+
+
+class NewtonResult(NamedTuple):
+    """Outcome of a Newton iteration; ``solution`` is of use only if ``is_converged``."""
+
+    solution: np.ndarray
+    is_converged: bool
+    residuals: np.ndarray
+    """Relative out-of-balance force, the start first."""
+
+
+def solve_newton(
+    evaluate: Callable[[np.ndarray], Evaluation],
+    solve: Solve,
+    start: np.ndarray,
+    tolerance: float,
+    max_iterations: int,
+) -> NewtonResult:
+    """Return the solution of ``evaluate(x).residual = 0`` from ``start`` (n_dofs,).
+
+    Convergence means |residual| <= tolerance * reference; at least one correction is always made, unless the start is
+    exact to round-off.
+    """
+    x = start
+    state = evaluate(x)
+    if not state.is_admissible:
+        return NewtonResult(x, False, np.array([np.inf]))
+    residuals = [_relative(state)]
+    for iteration in range(max_iterations):
+        if residuals[-1] <= (tolerance if iteration else ROUND_OFF):
+            return NewtonResult(x, True, np.array(residuals))
+        try:
+            correction = solve(state.tangent, -state.residual)
+        except SingularMatrixError:
+            break
+        x, state = _backtrack(evaluate, x, correction, residuals[-1])
+        if not state.is_admissible:
+            break
+        residuals.append(_relative(state))
+    is_converged = state.is_admissible and residuals[-1] <= tolerance
+    return NewtonResult(x, is_converged, np.array(residuals))
+
+
+def _relative(state: Evaluation) -> float:
+    return float(np.linalg.norm(state.residual) / state.reference)
+
+
+def _backtrack(
+    evaluate: Callable[[np.ndarray], Evaluation],
+    x: np.ndarray,
+    correction: np.ndarray,
+    residual: float,
+) -> tuple[np.ndarray, Evaluation]:
+    """Return the first trial that is admissible and does not increase the residual, else the best one."""
+    best: tuple[np.ndarray, Evaluation] | None = None
+    for halving in range(BACKTRACKS + 1):
+        trial = x + correction * 0.5**halving
+        state = evaluate(trial)
+        if not state.is_admissible:
+            best = best or (trial, state)
+            continue
+        if _relative(state) <= GROWTH_ALLOWED * residual:
+            return trial, state
+        if best is None or not best[1].is_admissible or _relative(state) < _relative(best[1]):
+            best = (trial, state)
+    assert best is not None  # the loop above runs at least once
+    return best
+
+
+def convergence_order(residuals: np.ndarray) -> float:
+    """Return the order p of the end of a residual history, r_k+1 ~ r_k^p; NaN if there are fewer than three residuals.
+
+    The last three residuals above round-off are used: p = ln(r_3 / r_2) / ln(r_2 / r_1).
+    """
+    above = residuals[residuals > ROUND_OFF]
+    if len(above) < 3:
+        return float("nan")
+    first, second, third = np.log(above[-3:])
+    return float((third - second) / (second - first)) if second < first else 0.0

@@ -1,0 +1,66 @@
+"""Seeding of material points in the cells of the undisturbed ground, with its geostatic state."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from install_mpm.background_mesh import BackgroundMesh
+from install_mpm.carriers import GeostaticGradient
+from install_mpm.cells import ReferenceCell, sub_region_points
+from install_mpm.constitutive import dispatch
+from install_mpm.conventions import GRAVITY
+from install_mpm.ground import Ground, geostatic_stress
+from install_mpm.material_points import MaterialPoints
+
+
+def seed_points(
+    mesh: BackgroundMesh, cell: ReferenceCell, ground: Ground, per_direction: int
+) -> MaterialPoints:
+    """Return the material points of level ground: every cell below z = 0 filled, K0 stress, elastic strain to match.
+
+    The logarithmic strain of the initial stress is referred to the initial configuration, so J = 1 at the start.
+    """
+    coordinates, shares = sub_region_points(cell, per_direction)
+    vertices = mesh.nodes[mesh.cell_nodes[:, : cell.n_vertices]]
+    cells = np.flatnonzero(vertices[:, :, -1].mean(axis=1) < 0.0)
+    origin, edges = vertices[cells, 0], vertices[cells, 1:] - vertices[cells, :1]
+    position = origin[:, None] + np.einsum("qv,cvi->cqi", coordinates, edges)
+    cell_volume = np.abs(np.linalg.det(edges)) / 2.0
+    position = position.reshape(-1, cell.dim)
+    volume = (cell_volume[:, None] * shares).ravel()
+    n_points = len(position)
+    stress = geostatic_stress(ground, position[:, -1], cell.dim - 1)
+    return MaterialPoints(
+        position=position,
+        displacement=np.zeros_like(position),
+        mass=volume * ground.unit_weight / GRAVITY,
+        volume=volume,
+        volume_ratio=np.ones(n_points),
+        elastic_log_strain=elastic_strain(ground, stress),
+        kirchhoff_stress=stress,
+        state_variables=dispatch.initial_state(ground.soil, -position[:, -1]),
+        material=np.zeros(n_points, dtype=np.int64),
+        cell=np.repeat(cells, len(shares)),
+        reference_coordinates=np.tile(coordinates, (len(cells), 1)),
+    )
+
+
+def elastic_strain(ground: Ground, stress: np.ndarray) -> np.ndarray:
+    """Return the elastic strain (n, 3, 3) that belongs to ``stress`` (n, 3, 3) in Pa in the soil of ``ground``."""
+    from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
+
+    material = np.zeros(len(stress), dtype=np.int64)
+    strain = np.empty((len(stress), 6))
+    six_vectors = np.ascontiguousarray(stress[:, ROW, COLUMN] * SCALE)
+    dispatch.elastic_strain_from_stress_all(
+        dispatch.pack([ground.soil]), material, six_vectors, strain
+    )
+    tensor = np.empty_like(stress)
+    tensor[:, ROW, COLUMN] = tensor[:, COLUMN, ROW] = strain / SCALE
+    return tensor
+
+
+def geostatic_gradient(ground: Ground, vertical: int) -> GeostaticGradient:
+    """Return the change of geostatic stress and strain per metre of height (both are linear in the ground)."""
+    per_metre = -geostatic_stress(ground, np.array([-1.0]), vertical)
+    return GeostaticGradient(strain=elastic_strain(ground, per_metre), stress=per_metre)
