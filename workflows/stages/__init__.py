@@ -1,1 +1,5 @@
-"""One script per stage, from the file of the stage before to its own."""
+"""The stages of a run, one script each: ``python -m workflows.stages.install CASE -o DIR``."""
+
+from workflows.environment import prepare
+
+prepare()  # each stage is also a script: before numpy and numba are imported

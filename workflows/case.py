@@ -1,0 +1,116 @@
+"""The case: one TOML file that describes ground, pile, installation, hand-over and service."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from handoff.options import HandoffOptions
+from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.conventions import Kinematics
+from install_mpm.ground import Ground
+from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
+from install_mpm.pile import Pile
+from service_fe.options import ServiceOptions
+from workflows.cross_checks import check
+from workflows.errors import CaseError
+from workflows.overrides import apply_overrides
+from workflows.schema import build, table_of
+from workflows.toml_text import format_toml
+
+__all__ = ["Case", "CaseError", "case_text", "parse_case", "read_case", "sections_text"]
+
+
+@dataclass(frozen=True)
+class Case:
+    """Everything that a run depends on; the sections of the case file have the same names."""
+
+    title: str
+    """What the results are called; a results directory belongs to one title."""
+    ground: Ground
+    pile: Pile
+    interface: CoulombInterface
+    box: Box
+    background_mesh: BackgroundMeshOptions
+    installation: InstallationProgramme
+    numerics: Numerics
+    handoff: HandoffOptions
+    service: ServiceOptions
+
+    @property
+    def kinematics(self) -> Kinematics:
+        """How displacements make strains; plane strain for now."""
+        return Kinematics.PLANE_STRAIN
+
+    @property
+    def final_tip_depth(self) -> float:
+        """Depth in m of the pile tip after the installation."""
+        return self.pile.embedment + self.installation.penetration
+
+
+def read_case(path: Path, overrides: Iterable[str] = ()) -> tuple[Case, str]:
+    """Return the case in the TOML file ``path`` after ``--set`` overrides, and its canonical text.
+
+    Raises
+    ------
+    CaseError
+        In one sentence: the file, the dotted key, what is wrong and the remedy.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError as error:
+        raise CaseError(f"{path}: no such file; give the path of a case file") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise CaseError(f"{path}: cannot be read as text ({error}); give a TOML file") from error
+    case = parse_case(text, str(path), overrides)
+    return case, case_text(case)
+
+
+def parse_case(text: str, source: str, overrides: Iterable[str] = ()) -> Case:
+    """Return the case in TOML ``text``; ``source`` is what errors call it.
+
+    Raises
+    ------
+    CaseError
+        As ``read_case``.
+    """
+    try:
+        document = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise CaseError(f"{source}: not valid TOML: {error}; correct that line") from error
+    changed = apply_overrides(document, overrides)
+    if changed:
+        source += f" with --set {', '.join(changed)}"
+    try:
+        case: Case = build(Case, document)
+        check(case)
+    except CaseError as error:
+        raise CaseError(f"{source}: {error}") from error
+    return case
+
+
+def case_text(case: Case) -> str:
+    """Return the canonical TOML text: every key, defaults filled in, quantities in SI.
+
+    Two spellings of the same case have the same text, and reading it gives the same case.
+    """
+    return format_toml(table_of(case))
+
+
+def sections_text(case: Case, keys: Iterable[str]) -> str:
+    """Return the canonical text of some keys only, e.g. of the sections that a stage depends on.
+
+    A key is the name of a section or, dotted, of one key of it.
+    """
+    table = table_of(case)
+    return format_toml({key.replace(".", "_"): _lookup(table, key) for key in sorted(set(keys))})
+
+
+def _lookup(table: dict[str, Any], key: str) -> Any:
+    value: Any = table
+    for part in key.split("."):
+        value = value[part]
+    return value

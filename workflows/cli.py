@@ -1,0 +1,176 @@
+"""The command line ``screwpile``: run, its stages one by one, check, template.
+
+Modules that take long to load are imported inside the commands, so that others answer at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from workflows.environment import prepare
+
+if TYPE_CHECKING:
+    from workflows.case import Case
+
+USER_ERROR = 2
+"""Exit status after an error that the user can mend."""
+
+INTERRUPTED = 130
+"""Exit status after Ctrl-C."""
+
+app = typer.Typer(
+    help="Install a pile with the material point method, hand the ground over, load it in service.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file (TOML).")]
+Results = Annotated[Path, typer.Argument(metavar="DIR", help="Results directory.")]
+Output = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", metavar="DIR", help="Results directory [default: out/CASE]."),
+]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change a value, e.g. pile.embedment='5 m'."),
+]
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Continue an interrupted installation from its checkpoint.")
+]
+
+
+@app.command()
+def run(
+    case: CaseFile, output: Output = None, overrides: Overrides = None, resume: Resume = False
+) -> None:
+    """Run all stages; those whose inputs did not change are skipped."""
+    from workflows.runner import run_case
+
+    loaded, directory = _load(case, output, overrides)
+    run_case(loaded, directory, resume=resume)
+
+
+@app.command()
+def install(
+    case: CaseFile, output: Output = None, overrides: Overrides = None, resume: Resume = False
+) -> None:
+    """Stage 1: jack the pile into the ground; writes installed.h5."""
+    from workflows.runner import run_from_case
+
+    loaded, directory = _load(case, output, overrides)
+    run_from_case("install", loaded, directory, resume=resume)
+
+
+@app.command()
+def handoff(directory: Results) -> None:
+    """Stage 2: from installed.h5; writes handed_off.h5 and certificate.json."""
+    from workflows.runner import run_from_files
+
+    run_from_files("hand_off", directory)
+
+
+@app.command()
+def serve(directory: Results) -> None:
+    """Stage 3: load the pile in service, from handed_off.h5; writes service.h5."""
+    from workflows.runner import run_from_files
+
+    run_from_files("serve", directory)
+
+
+@app.command()
+def wished(case: CaseFile, output: Output = None, overrides: Overrides = None) -> None:
+    """Load the same pile wished in place; writes wished_in_place/."""
+    from workflows.runner import run_from_case
+
+    loaded, directory = _load(case, output, overrides)
+    run_from_case("wished", loaded, directory)
+
+
+@app.command()
+def compare(directory: Results) -> None:
+    """Compare installed and wished in place; writes curves.csv and summary.json."""
+    from workflows.runner import run_from_files
+
+    run_from_files("compare", directory)
+
+
+@app.command()
+def report(directory: Results) -> None:
+    """Write report.html, a self-contained page, from the results."""
+    from workflows.runner import run_from_files
+
+    run_from_files("report", directory)
+
+
+@app.command()
+def export(directory: Results) -> None:
+    """Write the results for ParaView into paraview/."""
+    from workflows.runner import run_from_files
+
+    run_from_files("export", directory)
+
+
+@app.command()
+def check(case: CaseFile, overrides: Overrides = None) -> None:
+    """Validate a case and forecast its size and time."""
+    from workflows.case import read_case
+    from workflows.forecast import forecast, print_forecast
+
+    loaded, _ = read_case(case, overrides or ())
+    print_forecast(loaded, forecast(loaded))
+
+
+@app.command()
+def template() -> None:
+    """Print a commented case file."""
+    from workflows.template import template_text
+
+    sys.stdout.write(template_text())
+
+
+def _load(path: Path, output: Path | None, overrides: list[str] | None) -> tuple[Case, Path]:
+    from workflows.case import read_case
+
+    case, _ = read_case(path, overrides or ())
+    return case, output or Path("out") / path.stem
+
+
+def is_user_error(error: Exception) -> bool:
+    """Return whether ``error`` is one that a stage documents, with a message for the user."""
+    from handoff.equilibration import EquilibrationError
+    from handoff.gmsh_triangles import MeshError
+    from install_mpm.record import StateFileError
+    from workflows.errors import CaseError, DirectoryError
+
+    return isinstance(
+        error, CaseError | DirectoryError | StateFileError | EquilibrationError | MeshError
+    )
+
+
+def main() -> None:
+    """Run the command line."""
+    prepare()
+    run_as_command(app)
+
+
+def run_as_command(command: typer.Typer) -> None:
+    """Run ``command``; exit with status 2 and one sentence after a user error."""
+    try:
+        command()
+    except KeyboardInterrupt:
+        print("stopped; --resume continues the installation", file=sys.stderr)
+        sys.exit(INTERRUPTED)
+    except Exception as error:
+        if not is_user_error(error):
+            raise
+        print(f"screwpile: {' '.join(str(error).split())}", file=sys.stderr)
+        sys.exit(USER_ERROR)
+
+
+if __name__ == "__main__":
+    main()

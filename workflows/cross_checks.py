@@ -1,0 +1,105 @@
+"""Checks between the values of a case: geometry that cannot be, meshes that cannot resolve it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from workflows.errors import CaseError
+
+if TYPE_CHECKING:
+    from workflows.case import Case
+
+LARGEST_STEP = 0.5
+"""Largest step over the smallest cell: the pile must not pass more than half a cell at once."""
+
+HEAVE_MARGIN = 2.0
+"""Headroom over the mean heave of the box; beside the pile the ground rises more than that."""
+
+
+def check(case: Case) -> None:
+    """Check what single keys cannot tell.
+
+    Raises
+    ------
+    CaseError
+        Naming the keys, their values and the remedy, at the first contradiction.
+    """
+    _check_geometry(case)
+    _check_mesh_sizes(case)
+    _check_headroom(case)
+    _check_step(case)
+    _check_programmes(case)
+
+
+def _check_geometry(case: Case) -> None:
+    pile, box = case.pile, case.box
+    if pile.half_width + case.background_mesh.rigid_zone >= box.width:
+        raise CaseError(
+            f"pile.half_width {pile.half_width:g} m (with background_mesh.rigid_zone) does not fit "
+            f"into box.width {box.width:g} m; make the box wider"
+        )
+    margin = 2.0 * pile.half_width
+    if case.final_tip_depth + margin > box.depth:
+        raise CaseError(
+            f"pile.embedment {pile.embedment:g} m and installation.penetration "
+            f"{case.installation.penetration:g} m take the tip to {case.final_tip_depth:g} m, less "
+            f"than a pile width above the bottom of the box; make box.depth at least "
+            f"{case.final_tip_depth + margin:g} m (it is {box.depth:g} m)"
+        )
+
+
+def _check_headroom(case: Case) -> None:
+    box, half_width = case.box, case.pile.half_width
+    heave = half_width * case.installation.penetration / (box.width - half_width)
+    least = max(HEAVE_MARGIN * heave, case.background_mesh.size_at_pile)
+    if box.headroom < least:
+        raise CaseError(
+            f"box.headroom {box.headroom:g} m is too low for the ground that the pile displaces; "
+            f"make it at least {least:.2g} m"
+        )
+
+
+def _check_mesh_sizes(case: Case) -> None:
+    half_width = case.pile.half_width
+    for section, options in (("background_mesh", case.background_mesh), ("handoff", case.handoff)):
+        fine, coarse = options.size_at_pile, options.size_far
+        if coarse < fine:
+            raise CaseError(
+                f"{section}.size_far {coarse:g} m is smaller than {section}.size_at_pile "
+                f"{fine:g} m; exchange the two"
+            )
+        if fine > half_width:
+            raise CaseError(
+                f"{section}.size_at_pile {fine:g} m is larger than half the pile width "
+                f"({half_width:g} m); make it {half_width / 2:g} m or smaller"
+            )
+        if coarse > min(case.box.width, case.box.depth):
+            raise CaseError(
+                f"{section}.size_far {coarse:g} m is larger than the box; "
+                f"make it {min(case.box.width, case.box.depth) / 4:g} m or smaller"
+            )
+
+
+def _check_step(case: Case) -> None:
+    step, size = case.installation.step, case.background_mesh.size_at_pile
+    if step > LARGEST_STEP * size:
+        raise CaseError(
+            f"installation.step {step:g} m is larger than half the smallest cell "
+            f"(background_mesh.size_at_pile {size:g} m); "
+            f"make it {LARGEST_STEP * size:g} m or smaller"
+        )
+
+
+def _check_programmes(case: Case) -> None:
+    if not case.service.programmes:
+        raise CaseError(
+            "service.programmes is empty; add at least one [[service.programmes]] table"
+        )
+    names = Counter(programme.name for programme in case.service.programmes)
+    for name, count in names.items():
+        if count > 1:
+            raise CaseError(
+                f"service.programmes: {count} programmes are named {name!r}; "
+                "give each a name of its own"
+            )

@@ -1,0 +1,116 @@
+"""How large a case is and how long it takes: meshes are really made, the rest is estimated."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rich.console import Console
+from rich.table import Table
+
+from install_mpm.conventions import dimension
+from service_fe.options import Displace
+from workflows.case import Case
+
+# Cost model, measured on one core of a 2-core machine, numba compiled, OpenBLAS, MUMPS.
+ITERATIONS_PER_STEP = 5
+INSTALL_SECONDS_PER_DOF = 2.0e-5
+"""Per Newton iteration of the installation: assembly, factorisation and stress update."""
+SERVICE_SECONDS_PER_DOF = 4.0e-5
+"""The same in the service stage."""
+START_SECONDS = 15.0
+"""Starting Python, loading libraries, meshes, transfer, report."""
+BASE_MEMORY = 400e6
+"""Python with its libraries, in bytes."""
+MEMORY_PER_DOF = 6e3
+"""Matrix and factors, in bytes."""
+MEMORY_PER_POINT = 1.2e3
+"""Material points with scratch arrays, in bytes."""
+
+
+class Forecast(NamedTuple):
+    """Sizes and expected cost of a case."""
+
+    background_nodes: int
+    background_cells: int
+    material_points: int
+    install_dofs: int
+    install_steps: int
+    fe_nodes: int
+    fe_cells: int
+    service_dofs: int
+    service_steps: int
+    memory: float
+    """Largest memory in bytes."""
+    seconds: float
+    """Wall time on two cores once everything is compiled."""
+
+
+def forecast(case: Case) -> Forecast:
+    """Return the sizes of a case and an estimate of its memory and time."""
+    from handoff.fe_mesh import make_mesh
+    from handoff.surface import level_surface
+    from install_mpm.cells import CellType, reference_cell, sub_region_points
+    from install_mpm.mesh_generation import generate_background_mesh
+
+    mesh = generate_background_mesh(case.pile, case.box, case.background_mesh)
+    fe_mesh = make_mesh(case.pile, case.final_tip_depth, case.box, case.handoff, level_surface())
+    heights = mesh.nodes[mesh.cell_nodes[:, :3], 1].mean(axis=1)
+    _, shares = sub_region_points(
+        reference_cell(CellType.TRI6), case.background_mesh.points_per_direction
+    )
+    n_points = int((heights < 0.0).sum()) * len(shares)
+    dim = dimension(case.kinematics)
+    dofs, fe_dofs = dim * len(mesh.nodes), dim * len(fe_mesh.nodes)
+    steps = math.ceil(round(case.installation.penetration / case.installation.step, 9))
+    service_steps = sum(_programme_steps(programme) for programme in case.service.programmes)
+    install_time = steps * ITERATIONS_PER_STEP * dofs * INSTALL_SECONDS_PER_DOF
+    service_time = 2 * service_steps * ITERATIONS_PER_STEP * fe_dofs * SERVICE_SECONDS_PER_DOF
+    return Forecast(
+        background_nodes=len(mesh.nodes),
+        background_cells=len(mesh.cell_nodes),
+        material_points=n_points,
+        install_dofs=dofs,
+        install_steps=steps,
+        fe_nodes=len(fe_mesh.nodes),
+        fe_cells=len(fe_mesh.cell_nodes),
+        service_dofs=fe_dofs,
+        service_steps=service_steps,
+        memory=BASE_MEMORY + MEMORY_PER_DOF * max(dofs, fe_dofs) + MEMORY_PER_POINT * n_points,
+        seconds=START_SECONDS + install_time + service_time,
+    )
+
+
+def _programme_steps(programme: object) -> int:
+    if isinstance(programme, Displace):
+        return math.ceil(round(abs(programme.displacement) / programme.step, 9))
+    return int(getattr(programme, "steps", 1))
+
+
+def print_forecast(case: Case, sizes: Forecast, console: Console | None = None) -> None:
+    """Print a table of the forecast."""
+    table = Table(
+        title=f"{case.title}: the case is valid", title_justify="left", title_style="bold"
+    )
+    table.add_column("")
+    table.add_column("installation (MPM)", justify="right")
+    table.add_column("service (FE)", justify="right")
+    rows = (
+        ("nodes", sizes.background_nodes, sizes.fe_nodes),
+        ("cells", sizes.background_cells, sizes.fe_cells),
+        ("material points", sizes.material_points, ""),
+        ("degrees of freedom", sizes.install_dofs, sizes.service_dofs),
+        ("load steps", sizes.install_steps, f"2 x {sizes.service_steps}"),
+    )
+    for name, install, service in rows:
+        table.add_row(name, str(install), str(service))
+    console = console or Console()
+    console.print(table)
+    console.print(
+        f"memory about {sizes.memory / 1e9:.1f} GB, time about {_duration(sizes.seconds)} "
+        "on two cores (the first run also compiles, a minute or two)"
+    )
+
+
+def _duration(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.1f} min"

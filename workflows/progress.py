@@ -1,0 +1,67 @@
+"""What a run shows: a progress bar with time left on a terminal, else one line per stage."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    SpinnerColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+Advance = Callable[[int, int, str], None]
+"""Show that ``done`` of ``total`` steps are complete, with a short note."""
+
+
+def no_progress(_done: int, _total: int, _note: str) -> None:
+    """Show nothing."""
+
+
+class Reporter:
+    """Shows the progress of stages on a console."""
+
+    def __init__(self, console: Console | None = None) -> None:
+        self.console = console or Console(highlight=False)
+
+    @contextmanager
+    def stage(self, name: str, doing: str) -> Iterator[Advance]:
+        """Show one stage while it runs; yields the function that shows its steps."""
+        start = time.perf_counter()
+        if self.console.is_terminal:
+            with _bar(self.console) as progress:
+                task = progress.add_task(f"{name}: {doing}", total=None, note="")
+
+                def advance(done: int, total: int, note: str) -> None:
+                    progress.update(task, completed=done, total=total, note=note)
+
+                yield advance
+        else:
+            yield no_progress
+        self.say(f"{name:<9} {doing}: {time.perf_counter() - start:.1f} s")
+
+    def say(self, text: str) -> None:
+        """Print one line."""
+        self.console.print(text, markup=False, soft_wrap=True)
+
+
+def _bar(console: Console) -> Progress:
+    return Progress(
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        TextColumn("{task.fields[note]}"),
+        console=console,
+        transient=True,
+    )

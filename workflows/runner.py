@@ -1,0 +1,170 @@
+"""The stages in order: which are up to date, what each depends on, and their record."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+
+from workflows import directory as names
+from workflows.case import Case, sections_text
+from workflows.directory import check_ownership, claim
+from workflows.errors import DirectoryError
+from workflows.manifest import (
+    StageRecord,
+    code_hash,
+    file_hash,
+    read_manifest,
+    text_hash,
+    write_manifest,
+)
+from workflows.progress import Reporter
+from workflows.state_files import STATE_FILES, case_for, check_existing
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One arrow of the data flow: files in, files out."""
+
+    name: str
+    """Name of its module in ``workflows.stages``."""
+    doing: str
+    keys: tuple[str, ...]
+    """Keys of the case that it depends on."""
+    reads: tuple[str, ...]
+    writes: tuple[str, ...]
+    sources: tuple[str, ...]
+    """Packages and files whose code decides its results."""
+
+
+NUMERICS = ("install_mpm", "handoff", "service_fe")
+
+STAGES = (
+    Stage(
+        "install", "jack the pile into the ground", names.INSTALL_KEYS,
+        reads=(), writes=(names.INSTALLED,),
+        sources=("install_mpm", "workflows/stages/install.py"),
+    ),
+    Stage(
+        "hand_off", "hand the ground over to finite elements", names.HANDOFF_KEYS,
+        reads=(names.INSTALLED,), writes=(names.HANDED_OFF, names.CERTIFICATE),
+        sources=(*NUMERICS, "workflows/stages/hand_off.py"),
+    ),
+    Stage(
+        "serve", "load the installed pile in service", names.SERVICE_KEYS,
+        reads=(names.HANDED_OFF,), writes=(names.SERVICE,),
+        sources=(*NUMERICS, "workflows/stages/serve.py"),
+    ),
+    Stage(
+        "wished", "load the same pile wished in place", names.WISHED_KEYS,
+        reads=(), writes=(names.WISHED_SERVICE,),
+        sources=(*NUMERICS, "workflows/stages/wished.py"),
+    ),
+    Stage(
+        "compare", "compare the two", ("title", *names.SERVICE_KEYS),
+        reads=(names.INSTALLED, names.CERTIFICATE, names.SERVICE, names.WISHED_SERVICE),
+        writes=(names.CURVES, names.SUMMARY),
+        sources=(*NUMERICS, "workflows/stages/compare.py", "workflows/compare.py"),
+    ),
+)  # fmt: skip
+
+
+def stage_named(name: str) -> Stage:
+    """Return the stage called ``name``."""
+    return next(stage for stage in STAGES if stage.name == name)
+
+
+def inputs_of(stage: Stage, case: Case, directory: Path) -> dict[str, str]:
+    """Return the hashes of everything that decides the outputs of ``stage``."""
+    return {
+        "case": text_hash(sections_text(case, stage.keys)),
+        "code": code_hash(stage.sources),
+        **{
+            file: file_hash(directory / file) for file in stage.reads if (directory / file).exists()
+        },
+    }
+
+
+def is_up_to_date(stage: Stage, case: Case, directory: Path) -> bool:
+    """Return whether the outputs of ``stage`` are there and would be the same if it ran again."""
+    record = read_manifest(directory).stages.get(stage.name)
+    if record is None or not all((directory / file).exists() for file in stage.writes):
+        return False
+    outputs = {file: file_hash(directory / file) for file in stage.writes}
+    return record.outputs == outputs and record.inputs == inputs_of(stage, case, directory)
+
+
+def run_stage(stage: Stage, case: Case, directory: Path, reporter: Reporter) -> None:
+    """Run one stage and record it in the manifest."""
+    inputs = inputs_of(stage, case, directory)
+    start = time.perf_counter()
+    with reporter.stage(stage.name, stage.doing) as advance:
+        import_module(f"workflows.stages.{stage.name}").run(case, directory, advance)
+    manifest = read_manifest(directory)
+    manifest.stages[stage.name] = StageRecord(
+        inputs=inputs,
+        outputs={file: file_hash(directory / file) for file in stage.writes},
+        seconds=round(time.perf_counter() - start, 3),
+    )
+    write_manifest(directory, manifest)
+
+
+def run_case(
+    case: Case, directory: Path, reporter: Reporter | None = None, *, resume: bool = False
+) -> None:
+    """Run all stages in order; those whose inputs did not change are skipped.
+
+    Raises
+    ------
+    DirectoryError, StateFileError
+        Before anything runs, if ``directory`` holds another case's files or damaged ones.
+    """
+    reporter = reporter or Reporter()
+    check_ownership(directory, case)
+    check_existing(directory, case)
+    claim(directory, case)
+    if not resume:
+        (directory / names.CHECKPOINT).unlink(missing_ok=True)
+    for stage in STAGES:
+        if is_up_to_date(stage, case, directory):
+            reporter.say(f"{stage.name:<9} {stage.doing}: up to date")
+        else:
+            run_stage(stage, case, directory, reporter)
+
+
+def run_from_case(
+    name: str,
+    case: Case,
+    directory: Path,
+    reporter: Reporter | None = None,
+    *,
+    resume: bool = False,
+) -> None:
+    """Run one stage that needs nothing but the case: ``install`` or ``wished``.
+
+    Raises
+    ------
+    DirectoryError
+        Before anything runs, if ``directory`` holds another case's results.
+    """
+    check_ownership(directory, case)
+    claim(directory, case)
+    if name == "install" and not resume:
+        (directory / names.CHECKPOINT).unlink(missing_ok=True)
+    run_stage(stage_named(name), case, directory, reporter or Reporter())
+
+
+def run_from_files(name: str, directory: Path, reporter: Reporter | None = None) -> None:
+    """Run one stage from the files that the stages before it wrote into ``directory``.
+
+    Raises
+    ------
+    DirectoryError, StateFileError
+        If a file is missing, damaged or belongs to another case.
+    """
+    if not directory.is_dir():
+        raise DirectoryError(f"{directory}: no such directory; run `screwpile install` first")
+    stage = stage_named(name)
+    first = next(file for file in stage.reads if file in STATE_FILES)
+    run_stage(stage, case_for(directory, first), directory, reporter or Reporter())
