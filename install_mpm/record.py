@@ -47,7 +47,7 @@ def write_record(group: h5py.Group, record: Any) -> None:
     """Write every array of ``record`` as a dataset of ``group``, with unit and meaning as attributes."""
     for name, field in fields_of(type(record)).items():
         dataset = group.create_dataset(
-            name, data=np.ascontiguousarray(getattr(record, name), dtype=field.dtype)
+            name, data=np.asarray(getattr(record, name), dtype=field.dtype, order="C")
         )
         dataset.attrs["unit"] = field.unit
         dataset.attrs["doc"] = field.doc
