@@ -6,6 +6,7 @@ Modules that take long to load are imported inside the commands, so that others 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -144,18 +145,33 @@ def is_user_error(error: Exception) -> bool:
     """Return whether ``error`` is one that a stage documents, with a message for the user."""
     from handoff.equilibration import EquilibrationError
     from handoff.gmsh_triangles import MeshError
+    from install_mpm.installation import NotConvergedError
     from install_mpm.record import StateFileError
     from workflows.errors import CaseError, DirectoryError
 
-    return isinstance(
-        error, CaseError | DirectoryError | StateFileError | EquilibrationError | MeshError
+    documented = (
+        CaseError,
+        DirectoryError,
+        StateFileError,
+        NotConvergedError,
+        MeshError,
+        EquilibrationError,
     )
+    return isinstance(error, documented)
 
 
 def main() -> None:
     """Run the command line."""
     prepare()
     run_as_command(app)
+
+
+def run_script(command: Callable[..., None]) -> None:
+    """Run one command as a script of its own, e.g. ``python -m workflows.stages.install``."""
+    script = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+    script.command()(command)
+    prepare()
+    run_as_command(script)
 
 
 def run_as_command(command: typer.Typer) -> None:

@@ -100,7 +100,9 @@ def run_stage(stage: Stage, case: Case, directory: Path, reporter: Reporter) -> 
     inputs = inputs_of(stage, case, directory)
     start = time.perf_counter()
     with reporter.stage(stage.name, stage.doing) as advance:
-        import_module(f"workflows.stages.{stage.name}").run(case, directory, advance)
+        remarks = import_module(f"workflows.stages.{stage.name}").run(case, directory, advance)
+    for remark in remarks:
+        reporter.say(f"{'':<9} {remark}")
     manifest = read_manifest(directory)
     manifest.stages[stage.name] = StageRecord(
         inputs=inputs,

@@ -1,0 +1,64 @@
+"""Stage 2: hand the ground that the installation left over to finite elements.
+
+    python -m workflows.stages.hand_off DIR
+
+Reads ``installed.h5``; writes ``handed_off.h5`` and ``certificate.json``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from handoff.fe_mesh import FEMesh
+from handoff.fe_state_file import write_handed_off_state
+from handoff.hand_over import hand_over
+from handoff.quality import as_json, failed_checks
+from install_mpm.pile import buried_weight
+from install_mpm.state_file import InstalledState
+from service_fe.problem import ServiceProblem
+from workflows.case import Case, case_text
+from workflows.directory import CERTIFICATE, HANDED_OFF, INSTALLED, write_text
+from workflows.manifest import created_by
+from workflows.progress import Advance, no_progress
+from workflows.state_files import read_checked
+
+PHASES = ("mesh", "transfer", "admissibility", "equilibration", "certificate")
+
+
+def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str]:
+    """Hand over the installed state in ``directory``; return what the certificate objects to.
+
+    Raises
+    ------
+    StateFileError, DirectoryError
+        If ``installed.h5`` is missing or damaged, or belongs to another case.
+    MeshError, EquilibrationError
+        If the ground cannot be meshed or brought to equilibrium; nothing is written.
+    """
+    installed: InstalledState = read_checked(directory, INSTALLED, case)
+
+    def make_problem(mesh: FEMesh) -> ServiceProblem:
+        weight = buried_weight(case.pile, float(installed.pile.tip_depth))
+        return ServiceProblem(mesh, case.ground, case.interface, weight, case.service.numerics)
+
+    handed_off, certificate = hand_over(
+        installed,
+        case.ground,
+        case.pile,
+        case.box,
+        case.interface,
+        case.handoff,
+        make_problem,
+        observe=lambda phase: advance(PHASES.index(phase), len(PHASES), phase),
+    )
+    handed_off = handed_off._replace(case_text=case_text(case))
+    write_handed_off_state(directory / HANDED_OFF, handed_off, created_by())
+    write_text(directory / CERTIFICATE, as_json(certificate))
+    return failed_checks(certificate)
+
+
+if __name__ == "__main__":
+    from workflows.cli import handoff as command
+    from workflows.cli import run_script
+
+    run_script(command)

@@ -1,0 +1,77 @@
+"""Stage 1: jack the pile into the ground.
+
+    python -m workflows.stages.install CASE -o DIR
+
+Reads the case; writes ``installed.h5`` and, while it runs, ``installed.checkpoint.h5``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from install_mpm.installation import InstallationProgress, install
+from install_mpm.state_file import InstalledState, write_installed_state
+from workflows.case import Case, case_text
+from workflows.directory import CHECKPOINT, INSTALLED
+from workflows.manifest import created_by
+from workflows.progress import Advance, no_progress
+from workflows.state_files import read_checked
+
+
+def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str]:
+    """Install the pile of ``case``; return remarks for the user.
+
+    The installation continues from the checkpoint in ``directory`` if there is one.
+
+    Raises
+    ------
+    StateFileError, DirectoryError
+        If the checkpoint is damaged or belongs to another case.
+    NotConvergedError
+        If a step does not converge; nothing is written but the last checkpoint.
+    """
+    checkpoint = directory / CHECKPOINT
+    start = _read_checkpoint(directory, case)
+
+    def observe(state: InstalledState, progress: InstallationProgress) -> None:
+        advance(
+            round(1000.0 * progress.penetration),
+            round(1000.0 * progress.target),
+            f"mm, {progress.crowd_force / 1e3:.0f} kN/m, {progress.iterations} iterations",
+        )
+        if progress.load_step > 0 and progress.load_step % case.numerics.checkpoint_every == 0:
+            write_installed_state(checkpoint, state, created_by())
+
+    installed = install(
+        case.ground,
+        case.pile,
+        case.interface,
+        case.box,
+        case.background_mesh,
+        case.installation,
+        case.numerics,
+        case_text(case),
+        resume_from=start,
+        observe=observe,
+    )
+    write_installed_state(directory / INSTALLED, installed, created_by())
+    checkpoint.unlink(missing_ok=True)
+    force = float(installed.history.crowd_force[-1])
+    return [
+        f"pile tip at {float(installed.pile.tip_depth):g} m, "
+        f"crowd force {force / 1e3:.1f} kN/m after {len(installed.history.penetration)} steps"
+    ]
+
+
+def _read_checkpoint(directory: Path, case: Case) -> InstalledState | None:
+    if not (directory / CHECKPOINT).exists():
+        return None
+    state: InstalledState = read_checked(directory, CHECKPOINT, case)
+    return state._replace(case_text=case_text(case))
+
+
+if __name__ == "__main__":
+    from workflows.cli import install as command
+    from workflows.cli import run_script
+
+    run_script(command)
