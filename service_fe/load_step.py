@@ -51,6 +51,14 @@ class Unknowns(NamedTuple):
     motion: np.ndarray
     """Pile (3,) in m, m, rad."""
 
+    def scaled(self, factor: float) -> Unknowns:
+        """Return ``factor`` times these increments."""
+        return Unknowns(factor * self.displacement, factor * self.motion)
+
+    def plus(self, other: Unknowns) -> Unknowns:
+        """Return the sum of two increments."""
+        return Unknowns(self.displacement + other.displacement, self.motion + other.motion)
+
 
 class Step(NamedTuple):
     """An accepted load step."""
@@ -67,7 +75,7 @@ class Step(NamedTuple):
     @property
     def head_load(self) -> float:
         """Downward load in N on the head of the modelled half."""
-        return float(-self.pile_load[1])
+        return float(-self.pile_load[1]) + 0.0  # no negative zero
 
     @property
     def iterations(self) -> int:
@@ -113,11 +121,11 @@ class LoadStep:
 
     def solve(self, guess: Unknowns | None) -> Step:
         """Return the accepted step; see ``ServiceProblem.solve`` for guess and errors."""
-        start = self._evaluate(self._first_unknowns(guess))
+        start = self.evaluate(self._first_unknowns(guess))
         try:
             solution = solve_newton(
                 start,
-                self._search_direction,
+                self.search_direction,
                 self._evaluate_along,
                 self._has_jump(start),
                 self.model.numerics.tolerance,
@@ -138,9 +146,9 @@ class LoadStep:
     def _evaluate_along(self, trial: Trial, direction: np.ndarray, length: float) -> Trial:
         displacement, motion = trial.unknowns
         step = length * direction
-        return self._evaluate(Unknowns(displacement + step[:-3].reshape(-1, 2), motion + step[-3:]))
+        return self.evaluate(Unknowns(displacement + step[:-3].reshape(-1, 2), motion + step[-3:]))
 
-    def _evaluate(self, unknowns: Unknowns) -> Trial:
+    def evaluate(self, unknowns: Unknowns) -> Trial:
         """Return the response, the out-of-balance force and its relative size."""
         model, state = self.model, self.state
         soil = soil_response(model.materials, state, model.soil.strain(unknowns.displacement))
@@ -195,7 +203,7 @@ class LoadStep:
     def _has_jump(self, trial: Trial) -> bool:
         return any(jump.any() for jump in self._jumps(trial))
 
-    def _search_direction(self, trial: Trial) -> np.ndarray:
+    def search_direction(self, trial: Trial) -> np.ndarray:
         """Return the Newton correction (n_dofs + 3,) of soil displacement and pile motion."""
         solver, fixed = self.model.solver, self._fixed_dofs
         stiffness = self.model.soil.stiffness(trial.soil.tangent)

@@ -125,18 +125,3 @@ def _line_search(
         else:
             low, slope_low, slope_high = length, slope, 0.5 * slope_high
     return best
-
-
-def convergence_order(residuals: tuple[float, ...]) -> float:
-    """Return the largest order log(r_k+1 / r_k) / log(r_k / r_k-1) among the last three iterations.
-
-    NaN if there are fewer than three falling residuals.  At the very end round-off lowers the
-    observed order, therefore the largest of the last values that lie above ``1e-14`` counts.
-    """
-    usable = [value for value in residuals if value > 1e-14]
-    orders = [
-        np.log(new / middle) / np.log(middle / old)
-        for old, middle, new in zip(usable, usable[1:], usable[2:], strict=False)
-        if new < middle < old
-    ]
-    return float(max(orders[-2:])) if orders else float("nan")

@@ -29,6 +29,8 @@ class Displace:
     """Largest length of a step."""
     start: Literal["released", "equilibrated"] = "released"
     """Start from the end of the release, or from the state that was handed over."""
+    first_step_halvings: Annotated[int, Ge(0), Le(10)] = 4
+    """The first step is taken in parts: step / 2^4 twice, step / 2^3, ..., step / 2."""
     kind: Literal["displace"] = "displace"
 
 

@@ -7,7 +7,7 @@ falls in proportion to the element size at the footing's edge, and below 3 % on 
 import numpy as np
 import pytest
 
-from service_fe.newton import convergence_order
+from install_mpm.newton import convergence_order
 from workflows.verification.strip_footing_fe import EXACT, strip_footing
 
 pytestmark = [pytest.mark.dolfinx, pytest.mark.gmsh]
@@ -39,6 +39,6 @@ def test_load_has_reached_its_plateau(footings):
 
 def test_newton_ends_quadratically(footings):
     for footing in footings:
-        orders = np.array([convergence_order(residuals) for residuals in footing.residuals])
+        orders = np.array([convergence_order(np.array(residuals)) for residuals in footing.residuals])
         assert np.nanmedian(orders) >= 1.8
         assert footing.iterations.max() <= 12

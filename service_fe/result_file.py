@@ -1,0 +1,93 @@
+"""The file of the service stage, ``service.h5``: curves, stress and displacement."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, get_args
+
+import h5py
+
+from handoff.fe_mesh import FEMesh
+from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEState
+from install_mpm.record import StateFileError, read_record, write_record
+from install_mpm.state_file import open_state_file, read_header, write_header
+from service_fe.options import Displace, Programme, Release
+from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
+
+FORMAT = "screwpile-service-result"
+VERSION = 1
+
+RECORDS = {"mesh": FEMesh, "integration": FEIntegrationPoints, "interface": FEInterfacePoints}
+"""Groups of the file that all programmes share."""
+
+PROGRAMME_RECORDS = {"curve": Curve, "soil": Displacement, "state": FEState}
+"""Groups below ``/programmes/<number>``."""
+
+_PROGRAMME_OF_KIND = {"release": Release, "displace": Displace}
+_REMEDY = "run the service stage again"
+
+
+def write_service_result(path: Path, result: ServiceResult, created_by: str) -> None:
+    """Write the result to ``path`` atomically: a reader sees the old file or the whole new one."""
+    partial = path.with_suffix(path.suffix + ".partial")
+    with h5py.File(partial, "w") as file:
+        write_header(file, FORMAT, VERSION, result.case_text, created_by)
+        file.attrs["model"] = result.model
+        for name in RECORDS:
+            write_record(file.create_group(name), getattr(result, name))
+        programmes = file.create_group("programmes")
+        for number, programme_result in enumerate(result.programmes):
+            group = programmes.create_group(f"{number:03d}")
+            group.attrs["programme"] = json.dumps(asdict(programme_result.programme))
+            for name in PROGRAMME_RECORDS:
+                write_record(group.create_group(name), getattr(programme_result, name))
+    partial.replace(path)
+
+
+def read_service_result(path: Path) -> ServiceResult:
+    """Return the result stored at ``path``.
+
+    Raises
+    ------
+    StateFileError
+        If the file is damaged, foreign or of another version.
+    """
+    with open_state_file(path) as file:
+        case_text = read_header(file, FORMAT, VERSION)
+        model = file.attrs.get("model")
+        if model not in get_args(ModelName):
+            raise StateFileError(f"{path}: attribute model is {model!r}; {_REMEDY}")
+        records = _read_records(path, file, RECORDS)
+        if "programmes" not in file:
+            raise StateFileError(f"{path}: group /programmes is missing; {_REMEDY}")
+        programmes = tuple(
+            ProgrammeResult(
+                programme=_read_programme(path, group),
+                **_read_records(path, group, PROGRAMME_RECORDS),
+            )
+            for _, group in sorted(file["programmes"].items())
+        )
+    return ServiceResult(model=model, **records, programmes=programmes, case_text=case_text)
+
+
+def _read_records(path: Path, group: h5py.Group, types: dict[str, type]) -> dict[str, Any]:
+    """Return the records of ``types`` stored below ``group``."""
+    for name in types:
+        if name not in group:
+            place = f"{group.name.rstrip('/')}/{name}"
+            raise StateFileError(f"{path}: group {place} is missing; {_REMEDY}")
+    return {name: read_record(group[name], record_type) for name, record_type in types.items()}
+
+
+def _read_programme(path: Path, group: h5py.Group) -> Programme:
+    """Return the programme's options, stored as JSON."""
+    try:
+        values = json.loads(group.attrs["programme"])
+        programme: Programme = _PROGRAMME_OF_KIND[values["kind"]](**values)
+    except (KeyError, TypeError, ValueError) as error:
+        raise StateFileError(
+            f"{path}: attribute programme of group {group.name} is missing or unreadable; {_REMEDY}"
+        ) from error
+    return programme

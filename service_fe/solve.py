@@ -1,0 +1,238 @@
+"""Stage 3: the programmes of loading, one after the other; the step loop with cutting.
+
+A state is a value: programmes that start from the same state are independent branches.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEState
+from install_mpm.newton import convergence_order
+from install_mpm.pile import SYMMETRY_FACTOR
+from service_fe.load_step import Step, Unknowns
+from service_fe.loading import ImposedStep, imposed_steps
+from service_fe.newton import StepNotConvergedError
+from service_fe.options import Programme, Release
+from service_fe.problem import ServiceProblem
+from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
+
+
+class ServiceError(RuntimeError):
+    """The service stage cannot go on; the message names programme and step and says what to do."""
+
+
+class ServiceProgress(NamedTuple):
+    """What an observer is told after each step; whole pile, positive downward."""
+
+    programme: str
+    step: int
+    n_steps: int
+    displacement: float
+    head_load: float
+    iterations: int
+    cuts: int
+
+
+Observer = Callable[[ServiceProgress], None]
+
+
+class Advance(NamedTuple):
+    """A whole step of a programme, taken in one or more parts."""
+
+    last: Step
+    increment: Unknowns
+    iterations: int
+    cuts: int
+
+
+def run(
+    problem: ServiceProblem,
+    state: FEState,
+    programmes: Sequence[Programme],
+    observe: Observer = lambda progress: None,
+    *,
+    model: ModelName = "installed",
+    case_text: str = "",
+) -> ServiceResult:
+    """Return the result of all programmes.
+
+    Parameters
+    ----------
+    problem
+        Finite-element model.
+    state
+        Equilibrated state: handed over, or ``problem.wished_in_place_state()``.
+    programmes
+        Programmes in order; "released" is the end of the release before them.
+    observe
+        Called after each step.
+    model, case_text
+        Name of the model and text of the case, kept in the result.
+
+    Raises
+    ------
+    ServiceError
+        If two programmes have one name, a programme needs a release that has not been run, or a
+        step does not converge after ``max_cuts`` halvings.
+    """
+    check_programmes(programmes)
+    starts = {"equilibrated": state}
+    results = []
+    for programme in programmes:
+        if isinstance(programme, Release):
+            results.append(run_programme(problem, state, programme, observe))
+            starts["released"] = results[-1].state
+        else:
+            results.append(run_programme(problem, starts[programme.start], programme, observe))
+    return ServiceResult(
+        model=model,
+        mesh=problem.mesh,
+        integration=FEIntegrationPoints(problem.integration_positions, problem.integration_volumes),
+        interface=FEInterfacePoints(
+            problem.interface_positions,
+            problem.interface_normals,
+            problem.interface_areas,
+            problem.interface_parts,
+        ),
+        programmes=tuple(results),
+        case_text=case_text,
+    )
+
+
+def check_programmes(programmes: Sequence[Programme]) -> None:
+    """Check names and start states.
+
+    Raises
+    ------
+    ServiceError
+        If two programmes have one name, or one moves nothing or starts from a release that is not
+        before it.
+    """
+    names = [programme.name for programme in programmes]
+    for name in names:
+        if names.count(name) > 1:
+            raise ServiceError(f"two programmes are called {name!r}; give each its own name")
+    is_released = False
+    for programme in programmes:
+        if isinstance(programme, Release):
+            is_released = True
+        elif programme.displacement == 0.0:
+            raise ServiceError(f"programme {programme.name!r} has no displacement; give it one")
+        elif programme.start == "released" and not is_released:
+            raise ServiceError(
+                f"programme {programme.name!r} starts from the released pile; put a programme of"
+                ' kind "release" before it, or let it start from "equilibrated"'
+            )
+
+
+def run_programme(
+    problem: ServiceProblem,
+    state: FEState,
+    programme: Programme,
+    observe: Observer = lambda progress: None,
+) -> ProgrammeResult:
+    """Return the result of one programme that starts from ``state``.
+
+    Raises
+    ------
+    ServiceError
+        If a step does not converge.
+    """
+    head_load = _whole_pile(-problem.pile_load(state)[1])
+    steps = imposed_steps(programme, head_load)
+    rows = [_Row(0.0, head_load, 0, 0, ())]
+    displacement = np.zeros_like(problem.mesh.nodes)
+    guess, size = None, 0.0
+    for number, imposed in enumerate(steps, start=1):
+        guess = guess.scaled(imposed.size / size) if guess is not None and size else None
+        try:
+            taken = advance(problem, state, imposed, guess)
+        except StepNotConvergedError as error:
+            raise ServiceError(
+                f"programme {programme.name!r}, step {number} of {len(steps)} at"
+                f" {rows[-1].displacement:g} m: {error}; take smaller steps"
+            ) from error
+        state, guess, size = taken.last.state, taken.increment, imposed.size
+        displacement += taken.increment.displacement
+        rows.append(_row(rows[-1].displacement, taken))
+        observe(ServiceProgress(programme.name, number, len(steps), *rows[-1][:4]))
+    return ProgrammeResult(programme, _curve(rows), Displacement(displacement), state)
+
+
+def advance(
+    problem: ServiceProblem, state: FEState, imposed: ImposedStep, guess: Unknowns | None = None
+) -> Advance:
+    """Return a whole step, halved as often as needed; ``guess`` may be the step before.
+
+    After a success the next part is twice as long again.
+
+    Raises
+    ------
+    StepNotConvergedError
+        If a part of 1 / 2^max_cuts of the step does not converge.
+    """
+    done, share, cuts, iterations = 0.0, 1.0, 0, 0
+    total = Unknowns(np.zeros_like(problem.mesh.nodes), np.zeros(3))
+    step = None
+    while done < 1.0:
+        control = imposed.control(done, done + share)
+        try:
+            step = problem.solve(state, control, guess=guess)
+        except StepNotConvergedError:
+            if guess is not None:
+                guess = None
+                continue
+            cuts += 1
+            share *= 0.5
+            if share < 0.5**problem.numerics.max_cuts:
+                raise
+            continue
+        state, done, iterations = step.state, done + share, iterations + step.iterations
+        total = total.plus(step.increment)
+        next_share = min(2.0 * share, 1.0 - done)
+        guess = step.increment.scaled(next_share / share)
+        share = next_share
+    assert step is not None
+    return Advance(step, total, iterations, cuts)
+
+
+class _Row(NamedTuple):
+    displacement: float
+    head_load: float
+    iterations: int
+    cuts: int
+    residuals: tuple[float, ...]
+
+
+def _row(displacement: float, taken: Advance) -> _Row:
+    return _Row(
+        displacement - float(taken.increment.motion[1]),
+        _whole_pile(taken.last.head_load),
+        taken.iterations,
+        taken.cuts,
+        taken.last.residuals,
+    )
+
+
+def _curve(rows: Sequence[_Row]) -> Curve:
+    width = max(len(row.residuals) for row in rows)
+    history = np.full((len(rows), width), np.nan)
+    for padded, row in zip(history, rows, strict=True):
+        padded[: len(row.residuals)] = row.residuals
+    return Curve(
+        displacement=np.array([row.displacement for row in rows]),
+        head_load=np.array([row.head_load for row in rows]),
+        iterations=np.array([row.iterations for row in rows], dtype=np.int64),
+        residual=np.array([row.residuals[-1] if row.residuals else 0.0 for row in rows]),
+        convergence_order=np.array([convergence_order(np.array(row.residuals)) for row in rows]),
+        cuts=np.array([row.cuts for row in rows], dtype=np.int64),
+        residual_history=history,
+    )
+
+
+def _whole_pile(half: float) -> float:
+    return SYMMETRY_FACTOR * float(half)
