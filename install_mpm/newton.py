@@ -19,7 +19,7 @@ BACKTRACKS = 6
 GROWTH_ALLOWED = 1.0
 """A full step is taken while the residual does not grow beyond this factor."""
 
-ROUND_OFF = 1e-13
+ROUND_OFF = 2e-12
 """Relative residuals below this are round-off and say nothing about the order of convergence."""
 
 

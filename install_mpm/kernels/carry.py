@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from install_mpm._jit import jit, parallel_jit, prange
@@ -9,7 +11,13 @@ from install_mpm.cells import shape_functions
 from install_mpm.constitutive.dispatch import update_stress
 from install_mpm.constitutive.hencky import determinant, trial_log_strain
 from install_mpm.constitutive.mandel import from_mandel, to_mandel
-from install_mpm.kernels.equilibrium import CHUNKS, SMALLEST_VOLUME_RATIO, scale_volume
+from install_mpm.kernels.equilibrium import (
+    CHUNKS,
+    COLLAPSED,
+    LAW_FAILED,
+    SMALLEST_VOLUME_RATIO,
+    scale_volume,
+)
 from install_mpm.kernels.gradients import displacement_gradient, shape_gradients
 
 
@@ -136,53 +144,96 @@ def carry_points(
     strains of a cell is then replaced by their mean (plus the geostatic gradient), because a pressure that the
     integration points do not see would otherwise stay with the points for ever.
     """
-    n_cells, n_nodes = cell_nodes.shape
-    dim = nodes.shape[1]
+    n_cells = cell_nodes.shape[0]
     for chunk in prange(CHUNKS):
-        reference = np.empty((n_nodes, dim))
-        gradients = np.empty((n_nodes, dim))
-        values = np.empty(n_nodes)
-        increment = np.empty((3, 3))
-        vectors = np.empty((3, 3))
-        stretches, trial, stress, strain = np.empty(3), np.empty(6), np.empty(6), np.empty(6)
-        tangent = np.empty((6, 6))
+        scratch = _make_carry_scratch(cell_nodes.shape[1], nodes.shape[1])
         for c in range(chunk * n_cells // CHUNKS, (chunk + 1) * n_cells // CHUNKS):
-            status[c] = 0
-            first, last = cell_start[c], cell_start[c + 1]
-            for entry in range(first, last):
-                p = point_order[entry]
-                xi = points.reference_coordinates[p]
-                shape_gradients(cell_type, xi, nodes, cell_nodes[c], reference, gradients)
-                displacement_gradient(displacement, cell_nodes[c], gradients, increment)
-                for i in range(3):
-                    increment[i, i] += 1.0
-                ratio = determinant(increment)
-                if ratio < SMALLEST_VOLUME_RATIO:
-                    status[c] = 1
-                    break
-                if has_mean_dilatation:
-                    scale_volume(increment, cell_volume_ratio[c] / ratio, dim)
-                    ratio = cell_volume_ratio[c]
-                shape_functions(cell_type, xi, values)
-                for i in range(dim):
-                    motion = 0.0
-                    for a in range(n_nodes):
-                        motion += values[a] * displacement[cell_nodes[c, a], i]
-                    updated.position[p, i] = points.position[p, i] + motion
-                    updated.displacement[p, i] = points.displacement[p, i] + motion
-                updated.volume[p] = points.volume[p] * ratio
-                updated.volume_ratio[p] = points.volume_ratio[p] * ratio
-                trial_log_strain(increment, points.elastic_log_strain[p], trial, stretches, vectors)
-                from_mandel(trial, updated.elastic_log_strain[p])
-            if status[c] == 0 and has_mean_dilatation:
-                _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated)
-            for entry in range(first, last):
-                if status[c] != 0:
-                    break
-                p = point_order[entry]
-                status[c] = _return_to_yield_surface(
-                    p, points, materials, trial, stress, strain, tangent, updated
-                )
+            # parallel loops must not write to fields of a tuple: numba loses it; a called function may
+            status[c] = _carry_cell(
+                cell_type, cell_nodes[c], nodes, displacement, cell_volume_ratio[c], point_order,
+                cell_start[c], cell_start[c + 1], points, materials, strain_gradient,
+                has_mean_dilatation, scratch, updated,
+            )  # fmt: skip
+
+
+class CarryScratch(NamedTuple):
+    """Work arrays of one chunk."""
+
+    reference: np.ndarray
+    gradients: np.ndarray
+    values: np.ndarray
+    increment: np.ndarray
+    vectors: np.ndarray
+    stretches: np.ndarray
+    trial: np.ndarray
+    stress: np.ndarray
+    strain: np.ndarray
+    tangent: np.ndarray
+
+
+@jit
+def _make_carry_scratch(n_nodes, dim):
+    """Return work arrays for cells of ``n_nodes`` nodes."""
+    return CarryScratch(
+        np.empty((n_nodes, dim)),
+        np.empty((n_nodes, dim)),
+        np.empty(n_nodes),
+        np.empty((3, 3)),
+        np.empty((3, 3)),
+        np.empty(3),
+        np.empty(6),
+        np.empty(6),
+        np.empty(6),
+        np.empty((6, 6)),
+    )
+
+
+@jit
+def _carry_cell(
+    cell_type, cell_nodes, nodes, displacement, volume_ratio, point_order, first, last, points,
+    materials, strain_gradient, has_mean_dilatation, scratch, updated,
+):  # fmt: skip
+    """Move and strain the points of one cell; return 0, or why its points are not sound."""
+    dim = nodes.shape[1]
+    for entry in range(first, last):
+        p = point_order[entry]
+        xi = points.reference_coordinates[p]
+        increment = scratch.increment
+        shape_gradients(cell_type, xi, nodes, cell_nodes, scratch.reference, scratch.gradients)
+        displacement_gradient(displacement, cell_nodes, scratch.gradients, increment)
+        for i in range(3):
+            increment[i, i] += 1.0
+        ratio = determinant(increment)
+        if ratio < SMALLEST_VOLUME_RATIO:
+            return COLLAPSED
+        if has_mean_dilatation:
+            scale_volume(increment, volume_ratio / ratio, dim)
+            ratio = volume_ratio
+        _move_point(p, cell_type, cell_nodes, displacement, xi, points, scratch.values, updated)
+        updated.volume[p] = points.volume[p] * ratio
+        updated.volume_ratio[p] = points.volume_ratio[p] * ratio
+        trial_log_strain(
+            increment, points.elastic_log_strain[p], scratch.trial, scratch.stretches, scratch.vectors
+        )
+        from_mandel(scratch.trial, updated.elastic_log_strain[p])
+    if has_mean_dilatation:
+        _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated)
+    for entry in range(first, last):
+        if _return_to_yield_surface(point_order[entry], points, materials, scratch, updated):
+            return LAW_FAILED
+    return 0
+
+
+@jit
+def _move_point(p, cell_type, cell_nodes, displacement, xi, points, values, updated):
+    """Move point ``p`` with the displacement of its cell."""
+    shape_functions(cell_type, xi, values)
+    for i in range(displacement.shape[1]):
+        motion = 0.0
+        for a in range(cell_nodes.shape[0]):
+            motion += values[a] * displacement[cell_nodes[a], i]
+        updated.position[p, i] = points.position[p, i] + motion
+        updated.displacement[p, i] = points.displacement[p, i] + motion
 
 
 @jit
@@ -209,14 +260,14 @@ def _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated
 
 
 @jit
-def _return_to_yield_surface(p, points, materials, trial, stress, strain, tangent, updated):
+def _return_to_yield_surface(p, points, materials, scratch, updated):
     """Evaluate the law of point ``p`` from the trial strain that ``updated`` holds; return its status."""
     row = points.material[p]
-    to_mandel(updated.elastic_log_strain[p], trial)
+    to_mandel(updated.elastic_log_strain[p], scratch.trial)
     status = update_stress(
-        materials.model[row], trial, materials.parameters[row], points.state_variables[p],
-        stress, strain, updated.state_variables[p], tangent,
+        materials.model[row], scratch.trial, materials.parameters[row], points.state_variables[p],
+        scratch.stress, scratch.strain, updated.state_variables[p], scratch.tangent,
     )  # fmt: skip
-    from_mandel(strain, updated.elastic_log_strain[p])
-    from_mandel(stress, updated.kirchhoff_stress[p])
+    from_mandel(scratch.strain, updated.elastic_log_strain[p])
+    from_mandel(scratch.stress, updated.kirchhoff_stress[p])
     return status

@@ -104,8 +104,6 @@ def evaluate_cells(
         for c in range(chunk * n_cells // CHUNKS, (chunk + 1) * n_cells // CHUNKS):
             force[c] = 0.0
             stiffness[c] = 0.0
-            trial.status[c] = 0
-            trial.cell_volume_ratio[c] = 1.0
             if is_active[c]:
                 _evaluate_cell(
                     c, cell_nodes[c], points, displacement, materials, options, scratch,
@@ -119,6 +117,7 @@ def _evaluate_cell(
 ):
     """Fill force, stiffness and trial state of cell ``c``."""
     dim = displacement.shape[1]
+    trial.status[c] = 0
     first, last = points.cell_start[c], points.cell_start[c + 1]
     mean_ratio = _deform(first, last, cell_nodes, points, displacement, options, scratch)
     if mean_ratio <= 0.0:
@@ -163,6 +162,8 @@ def _deform(first, last, cell_nodes, points, displacement, options, scratch):
     volume = 0.0
     deformed_volume = 0.0
     for q in range(first, last):
+        if points.volume[q] == 0.0:
+            continue
         local = q - first
         increment = scratch.gradient[local]
         displacement_gradient(displacement, cell_nodes, points.shape_gradients[q], increment)
@@ -307,9 +308,13 @@ def _add_volumetric_term(first, last, mean_ratio, modulus, points, scratch, forc
     deformed_volume = 0.0
     total_strain = 0.0
     for q in range(first, last):
+        if points.volume[q] == 0.0:
+            continue
         deformed_volume += points.volume[q] * scratch.jacobian[q - first]
         total_strain += points.volume[q] * np.log(scratch.jacobian[q - first] / mean_ratio)
     for q in range(first, last):
+        if points.volume[q] == 0.0:
+            continue
         local = q - first
         gradients = scratch.current_gradients[local]
         volume, jacobian = points.volume[q], scratch.jacobian[local]
