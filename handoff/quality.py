@@ -39,7 +39,7 @@ class Figure:
     @property
     def is_met(self) -> bool:
         """Whether the limit is kept; a figure without limit is for information."""
-        return self.limit is None or self.value <= self.limit
+        return self.limit is None or bool(self.value <= self.limit)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,73 @@
+"""Interface tractions: geostatic exactly, resultants kept, inactive points passed over."""
+
+import numpy as np
+import pytest
+
+from handoff.geostatic import geostatic_traction
+from handoff.interface_transfer import pile_forces, transferred_traction
+from install_mpm.pile import PilePart
+
+pytestmark = pytest.mark.gmsh
+
+
+@pytest.fixture(scope="module")
+def surface(site, build):
+    return build.pile_surface(site.mesh())
+
+
+def test_geostatic_traction_is_reproduced(site, build, surface):
+    traction = transferred_traction(
+        site.ground, build.interface(site), surface.positions, surface.areas, surface.parts
+    )
+    expected = geostatic_traction(site.ground, surface.positions, surface.normals)
+    assert np.abs(traction - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+def test_resultant_of_each_part_is_kept(site, build, surface):
+    """A base pressure rising to the edge and adhesion that starts 1 m down, on unequal points."""
+    points = build.interface(site, per_part=40)
+    x, z = points.position.T
+    extra = np.column_stack(
+        [np.where(x < 0.5, 0.0, 10e3 * (z < -1.0)), np.where(z < -1.999, -40e3 * (1 + x**2), 0.0)]
+    )
+    points = points._replace(traction=points.traction + extra * points.is_active[:, None])
+    traction = transferred_traction(
+        site.ground, points, surface.positions, surface.areas, surface.parts
+    )
+    before = pile_forces(
+        points.traction, points.normal, points.area * points.is_active, points.part
+    )
+    after = pile_forces(traction, surface.normals, surface.areas, surface.parts)
+    for part in PilePart:
+        assert after[part] == pytest.approx(before[part], rel=2e-3)
+
+
+def test_reaction_is_upward_under_pressure_and_pulling_down_soil(site):
+    """Soil presses on the base and is dragged down by the shaft: both push the pile up."""
+    traction = np.array([[0.0, -100.0], [30.0, 0.0]])
+    normals = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    forces = pile_forces(traction, normals, np.array([0.5, 2.0]), np.array([0, 1]))
+    assert forces == {PilePart.BASE: 100.0, PilePart.SHAFT: 120.0}
+
+
+def test_lost_contact_inside_a_part_takes_the_difference_of_its_neighbours(site, build, surface):
+    points = build.interface(site)
+    lost = np.flatnonzero(points.part == PilePart.SHAFT)[20:23]
+    traction, is_active = points.traction.copy(), points.is_active.copy()
+    traction[lost], is_active[lost] = 0.0, 0
+    result = transferred_traction(
+        site.ground,
+        points._replace(traction=traction, is_active=is_active),
+        surface.positions,
+        surface.areas,
+        surface.parts,
+    )
+    expected = geostatic_traction(site.ground, surface.positions, surface.normals)
+    assert np.abs(result - expected).max() < 1e-12 * np.abs(expected).max()
+
+
+def test_base_without_contact_is_named(site, build, surface):
+    points = build.interface(site)
+    points = points._replace(is_active=points.is_active * (points.part == PilePart.SHAFT))
+    with pytest.raises(ValueError, match="no soil touches the base"):
+        transferred_traction(site.ground, points, surface.positions, surface.areas, surface.parts)

@@ -1,0 +1,53 @@
+"""The synthetic field balances gravity, and its error falls with the number of points."""
+
+import numpy as np
+import pytest
+
+from handoff.state_transfer import state_map
+from handoff.synthetic import airy_stress, distance_to_pile, synthetic_errors
+
+
+def test_airy_field_is_free_of_divergence(site):
+    positions = np.random.default_rng(0).uniform((0.0, -4.0), (2.0, -1.0), size=(50, 2))
+    step = 1e-4
+
+    def derivative(axis):
+        offset = step * np.eye(2)[axis]
+        ahead, behind = (
+            airy_stress(site.ground, site.pile, 2.0, positions + s * offset) for s in (1, -1)
+        )
+        return (ahead - behind) / (2.0 * step)
+
+    along_x, along_z = derivative(0), derivative(1)
+    divergence = along_x[:, 0, :2] + along_z[:, 1, :2]
+    assert np.abs(divergence).max() < 1e-6 * np.abs(along_x).max()
+
+
+def test_airy_field_is_symmetric_about_the_axis_and_several_times_the_strength(site):
+    axis = np.column_stack([np.zeros(20), np.linspace(-4.0, -2.0, 20)])
+    stress = airy_stress(site.ground, site.pile, 2.0, axis)
+    assert np.abs(stress[:, 0, 1]).max() < 1e-9
+    assert np.abs(stress).max() > 2.0 * 20e3
+
+
+@pytest.mark.gmsh
+def test_error_falls_with_the_density_of_points(site, build):
+    mesh = site.mesh(0.1)
+    targets, volumes = build.integration_points(mesh)
+    errors = []
+    for size in (0.2, 0.1, 0.05):
+        points = build.points(site.mesh(size), site.ground)
+        chart = state_map(points, site.pile, 2.0, targets, 32)
+        errors.append(
+            synthetic_errors(site.ground, site.pile, 2.0, chart, points.position, targets, volumes)
+        )
+    everywhere, near = np.transpose(errors)
+    assert (np.diff(everywhere) < 0.0).all()
+    assert (np.diff(near) < 0.0).all()
+    assert everywhere[0] > 3.0 * everywhere[-1]
+    assert everywhere[-1] < 0.01
+
+
+def test_distance_to_the_pile_is_zero_on_it_and_diagonal_at_the_corner(site):
+    places = np.array([[0.5, -1.0], [0.2, -2.0], [0.8, -2.4], [1.5, -1.0]])
+    assert distance_to_pile(site.pile, 2.0, places) == pytest.approx([0.0, 0.0, 0.5, 1.0])
