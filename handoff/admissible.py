@@ -30,48 +30,67 @@ class YieldCorrections(NamedTuple):
     """Largest of the same."""
 
 
-def admissible_state(ground: Ground, state: FEState) -> tuple[FEState, YieldCorrections]:
-    """Return the state with every stress on or inside its yield surface, and what that took.
+def admissible_state(
+    ground: Ground, interface: CoulombInterface, interface_positions: np.ndarray, state: FEState
+) -> tuple[FEState, YieldCorrections]:
+    """Return the state with every stress inside its yield surface and every traction its limit.
+
+    The second value tells how many stresses were corrected, and by how much.
 
     Raises
     ------
     ValueError
         If the soil law cannot return a stress, which names the first such integration point.
     """
-    materials = dispatch.pack([ground.soil])
-    transferred = six_vectors(state.cauchy_stress)
-    overstress = yield_values(ground, state)
-    outside = np.flatnonzero(overstress > 0.0)
-    strain = six_vectors(elastic_strain_of(ground, state.material, state.cauchy_stress))
-    stress, elastic, variables = transferred.copy(), strain.copy(), state.state_variables.copy()
-    new_stress, new_elastic, new_variables = (
-        array[outside] for array in (stress, elastic, variables)
+    outside = np.flatnonzero(yield_values(ground, state) > 0.0)
+    stress, strain, variables = _returned(ground, state, outside)
+    corrected = state._replace(
+        cauchy_stress=_with_rows(state.cauchy_stress, outside, tensors_of(stress)),
+        elastic_strain=_with_rows(state.elastic_strain, outside, tensors_of(strain)),
+        state_variables=_with_rows(state.state_variables, outside, variables),
+        interface_traction=admissible_traction(
+            ground, interface, interface_positions, state.interface_traction
+        ),
     )
-    status = np.zeros(len(outside), dtype=np.int64)
+    before = six_vectors(state.cauchy_stress[outside])
+    return corrected, _corrections(before, stress, len(state.material))
+
+
+def _returned(
+    ground: Ground, state: FEState, outside: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return stress (n, 6), elastic strain (n, 6) and state variables on the yield surface."""
+    material = state.material[outside]
+    trial = six_vectors(elastic_strain_of(ground, material, state.cauchy_stress[outside]))
+    variables = state.state_variables[outside]
+    count, status = len(outside), np.zeros(len(outside), dtype=np.int64)
+    stress, strain, new_variables = np.empty((count, 6)), np.empty((count, 6)), variables.copy()
+    tangent = np.empty((count, 6, 6))
     dispatch.update_all(
-        materials,
-        state.material[outside],
-        strain[outside],
-        variables[outside],
-        new_stress,
-        new_elastic,
+        dispatch.pack([ground.soil]),
+        material,
+        trial,
+        variables,
+        stress,
+        strain,
         new_variables,
-        np.empty((len(outside), 6, 6)),
+        tangent,
         status,
     )
     if status.any():
-        point = outside[np.argmax(status != 0)]
         raise ValueError(
-            f"the soil law could not return the transferred stress of integration point {point}"
-            " to the yield surface; look at the installed stresses beside it"
+            "the soil law could not return the transferred stress of integration point"
+            f" {outside[np.argmax(status != 0)]} to the yield surface;"
+            " look at the installed stresses beside it"
         )
-    stress[outside], elastic[outside], variables[outside] = new_stress, new_elastic, new_variables
-    corrected = state._replace(
-        cauchy_stress=tensors_of(stress),
-        elastic_strain=tensors_of(elastic),
-        state_variables=variables,
-    )
-    return corrected, _corrections(transferred, stress, outside)
+    return stress, strain, new_variables
+
+
+def _with_rows(array: np.ndarray, rows: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return a copy of ``array`` with some rows replaced."""
+    copy = array.copy()
+    copy[rows] = values
+    return copy
 
 
 def yield_values(ground: Ground, state: FEState) -> np.ndarray:
@@ -105,12 +124,11 @@ def admissible_traction(
     return returned
 
 
-def _corrections(before: np.ndarray, after: np.ndarray, outside: np.ndarray) -> YieldCorrections:
-    """Return the statistics of the stress changes of six-vectors (n, 6) at points ``outside``."""
-    if len(outside) == 0:
+def _corrections(before: np.ndarray, after: np.ndarray, n_points: int) -> YieldCorrections:
+    """Return the statistics of the changes of the six-vectors (n, 6) that were corrected."""
+    if len(before) == 0:
         return YieldCorrections(0.0, 0.0, 0.0)
-    deviator = before[outside].copy()
-    deviator[:, :3] -= deviator[:, :3].mean(axis=1, keepdims=True)
-    change = np.linalg.norm(after[outside] - before[outside], axis=1)
-    size = change / np.linalg.norm(deviator, axis=1)
-    return YieldCorrections(len(outside) / len(before), float(size.mean()), float(size.max()))
+    deviator = before.copy()
+    deviator[:, :3] -= before[:, :3].mean(axis=1, keepdims=True)
+    size = np.linalg.norm(after - before, axis=1) / np.linalg.norm(deviator, axis=1)
+    return YieldCorrections(len(before) / n_points, float(size.mean()), float(size.max()))

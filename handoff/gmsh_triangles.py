@@ -39,7 +39,7 @@ def triangulate(
     Raises
     ------
     MeshError
-        If gmsh fails.
+        If gmsh cannot be loaded, or fails.
     """
     with _own_model() as gmsh:
         geometry = gmsh.model.geo
@@ -72,7 +72,10 @@ def _triangles(gmsh: Any) -> tuple[np.ndarray, np.ndarray]:
 @contextmanager
 def _own_model() -> Iterator[Any]:
     """Lend gmsh with an empty model; afterwards gmsh is as it was found, initialised or not."""
-    import gmsh
+    try:
+        import gmsh
+    except (ImportError, OSError) as error:  # the wheel needs system libraries, such as libGLU
+        raise MeshError(f"gmsh cannot be loaded ({error}); run script/bootstrap") from error
 
     was_running = bool(gmsh.isInitialized())
     if not was_running:

@@ -6,19 +6,18 @@ from collections.abc import Callable
 
 import numpy as np
 
-from handoff.admissible import admissible_state, admissible_traction
+from handoff.admissible import admissible_state
 from handoff.equilibration import EquilibriumProblem, equilibrate
 from handoff.fe_mesh import FEMesh, make_mesh
 from handoff.fe_state_file import (
     FEIntegrationPoints,
     FEInterfacePoints,
-    FEState,
     HandedOffPile,
     HandedOffState,
 )
 from handoff.interface_transfer import pile_forces
 from handoff.options import HandoffOptions
-from handoff.quality import Certificate, as_json, certify
+from handoff.quality import Certificate, Evidence, as_json, certify
 from handoff.state_transfer import state_map, transfer_state
 from handoff.surface import surface_profile
 from install_mpm.constitutive.parameters import CoulombInterface
@@ -61,57 +60,50 @@ def hand_over(
 
     observe("transfer")
     targets = problem.integration_positions
-    state_from_points = state_map(points, pile, tip_depth, targets, options.neighbours)
-    raw = transfer_state(installed, ground, problem, state_from_points)
+    chart = state_map(points, pile, tip_depth, targets, options.neighbours)
+    raw = transfer_state(installed, ground, problem, chart)
 
     observe("admissibility")
-    admissible, corrections = admissible_state(ground, raw)
-    traction = admissible_traction(
-        ground, interface, problem.interface_positions, raw.interface_traction
-    )
-    transferred = admissible._replace(interface_traction=traction)
+    places = problem.interface_positions
+    transferred, corrections = admissible_state(ground, interface, places, raw)
 
     observe("equilibration")
     balanced, report = equilibrate(problem, transferred, options)
 
     observe("certificate")
-    certificate = certify(
-        installed,
-        ground,
-        pile,
-        problem,
-        options,
-        state_from_points,
-        corrections,
-        transferred,
-        balanced,
-        report,
+    evidence = Evidence(
+        installed=installed,
+        ground=ground,
+        pile=pile,
+        problem=problem,
+        options=options,
+        state_map=chart,
+        corrections=corrections,
+        transferred=transferred,
+        balanced=balanced,
+        report=report,
     )
-    weight = buried_weight(pile, tip_depth)
-    return _handed_off(installed, mesh, problem, balanced, weight, certificate), certificate
+    certificate = certify(evidence)
+    return _handed_off(evidence, mesh, certificate), certificate
 
 
-def _handed_off(
-    installed: InstalledState,
-    mesh: FEMesh,
-    problem: EquilibriumProblem,
-    state: FEState,
-    pile_weight: float,
-    certificate: Certificate,
-) -> HandedOffState:
+def _handed_off(evidence: Evidence, mesh: FEMesh, certificate: Certificate) -> HandedOffState:
     """Return the record of everything that the service stage starts from."""
-    normals, areas, parts = (
+    problem, state, installed = evidence.problem, evidence.balanced, evidence.installed
+    interface = FEInterfacePoints(
+        problem.interface_positions,
         problem.interface_normals,
         problem.interface_areas,
         problem.interface_parts,
     )
-    forces = pile_forces(state.interface_traction, normals, areas, parts)
-    head_load = sum(forces.values()) / SYMMETRY_FACTOR - pile_weight
+    forces = pile_forces(state.interface_traction, interface.normal, interface.area, interface.part)
+    weight = buried_weight(evidence.pile, float(installed.pile.tip_depth))
+    head_load = sum(forces.values()) / SYMMETRY_FACTOR - weight
     return HandedOffState(
         mesh=mesh,
         state=state,
         integration=FEIntegrationPoints(problem.integration_positions, problem.integration_volumes),
-        interface=FEInterfacePoints(problem.interface_positions, normals, areas, parts),
+        interface=interface,
         pile=HandedOffPile(np.array(installed.pile.tip_depth), np.array(head_load)),
         certificate=as_json(certificate),
         case_text=installed.case_text,

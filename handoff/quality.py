@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from handoff.admissible import YieldCorrections, yield_values
 from handoff.equilibration import EquilibrationReport, EquilibriumProblem
 from handoff.fe_state_file import FEState
-from handoff.geostatic import geostatic_state
+from handoff.geostatic import VERTICAL, geostatic_state
 from handoff.interface_transfer import pile_forces
 from handoff.options import HandoffOptions
 from handoff.state_transfer import FALLBACK_FROM, StateMap
 from handoff.synthetic import relative_norm, synthetic_errors
 from install_mpm.conventions import GRAVITY
 from install_mpm.ground import Ground
-from install_mpm.material_points import MaterialPoints, cauchy_stress
+from install_mpm.material_points import cauchy_stress
 from install_mpm.pile import SYMMETRY_FACTOR, Pile, PilePart
 from install_mpm.state_file import InstalledState
 
@@ -72,64 +72,62 @@ def failed_checks(certificate: Certificate) -> list[str]:
     ]
 
 
-def certify(
-    installed: InstalledState,
-    ground: Ground,
-    pile: Pile,
-    problem: EquilibriumProblem,
-    options: HandoffOptions,
-    state_map: StateMap,
-    corrections: YieldCorrections,
-    transferred: FEState,
-    balanced: FEState,
-    report: EquilibrationReport,
-) -> Certificate:
-    """Return the certificate, from the states before and after the equilibration."""
-    points = installed.material_points
+class Evidence(NamedTuple):
+    """What a certificate is made from."""
+
+    installed: InstalledState
+    ground: Ground
+    pile: Pile
+    problem: EquilibriumProblem
+    options: HandoffOptions
+    state_map: StateMap
+    corrections: YieldCorrections
+    transferred: FEState
+    """The state before the equilibration."""
+    balanced: FEState
+    """The state after the equilibration."""
+    report: EquilibrationReport
+
+
+def certify(evidence: Evidence) -> Certificate:
+    """Return the certificate of a hand-over."""
     return Certificate(
         {
-            **_synthetic_figures(installed, ground, pile, problem, state_map, options),
-            **_distance_figures(state_map),
-            **_nearest_figure(points, problem, state_map, transferred),
-            **_yield_figures(ground, corrections, balanced),
-            **_equilibrium_figures(ground, problem, report, options),
-            **_reaction_figures(installed, problem, transferred, balanced, options),
-            **_volume_figures(points, ground, problem),
+            **_synthetic_figures(evidence),
+            **_distance_figures(evidence.state_map),
+            **_nearest_figure(evidence),
+            **_yield_figures(evidence),
+            **_equilibrium_figures(evidence),
+            **_reaction_figures(evidence),
+            **_volume_figures(evidence),
         }
     )
 
 
-def _synthetic_figures(
-    installed: InstalledState,
-    ground: Ground,
-    pile: Pile,
-    problem: EquilibriumProblem,
-    state_map: StateMap,
-    options: HandoffOptions,
-) -> dict[str, Figure]:
+def _synthetic_figures(evidence: Evidence) -> dict[str, Figure]:
     everywhere, near = synthetic_errors(
-        ground,
-        pile,
-        float(installed.pile.tip_depth),
-        state_map,
-        installed.material_points.position,
-        problem.integration_positions,
-        problem.integration_volumes,
+        evidence.ground,
+        evidence.pile,
+        float(evidence.installed.pile.tip_depth),
+        evidence.state_map,
+        evidence.installed.material_points.position,
+        evidence.problem.integration_positions,
+        evidence.problem.integration_volumes,
     )
-    meaning = "relative L2 error of a synthetic equilibrated field sampled at the material points"
-    limit = options.max_synthetic_error
+    what = "relative L2 error of a synthetic equilibrated field sampled at the material points"
+    limit = evidence.options.max_synthetic_error
     return {
-        "synthetic_error": Figure(everywhere, "", meaning, limit),
+        "synthetic_error": Figure(everywhere, "", what, limit),
         "synthetic_error_near_pile": Figure(
-            near, "", f"{meaning}, within one pile width of the pile", limit
+            near, "", f"{what}, within one pile width of the pile", limit
         ),
     }
 
 
 def _distance_figures(state_map: StateMap) -> dict[str, Figure]:
     distance = state_map.relative_distance[np.isfinite(state_map.relative_distance)]
-    what = "distance to the nearest material point over its size"
     far = state_map.geostatic_share > 0.0
+    what = "distance to the nearest material point over its size"
     return {
         "nearest_distance_median": Figure(float(np.median(distance)), "", f"{what}, median"),
         "nearest_distance_p99": Figure(
@@ -145,22 +143,19 @@ def _distance_figures(state_map: StateMap) -> dict[str, Figure]:
     }
 
 
-def _nearest_figure(
-    points: MaterialPoints, problem: EquilibriumProblem, state_map: StateMap, transferred: FEState
-) -> dict[str, Figure]:
-    nearest = cauchy_stress(points)[state_map.weights.nearest]
-    difference = relative_norm(
-        nearest - transferred.cauchy_stress, transferred.cauchy_stress, problem.integration_volumes
-    )
-    meaning = "cross-check: stress of the nearest material point less transferred stress, relative"
-    return {"nearest_difference": Figure(difference, "", meaning)}
+def _nearest_figure(evidence: Evidence) -> dict[str, Figure]:
+    stress = evidence.transferred.cauchy_stress
+    points = cauchy_stress(evidence.installed.material_points)
+    nearest = points[evidence.state_map.weights.nearest]
+    difference = relative_norm(nearest - stress, stress, evidence.problem.integration_volumes)
+    what = "cross-check: stress of the nearest material point against the fit, relative L2"
+    return {"nearest_difference": Figure(difference, "", what)}
 
 
-def _yield_figures(
-    ground: Ground, corrections: YieldCorrections, balanced: FEState
-) -> dict[str, Figure]:
+def _yield_figures(evidence: Evidence) -> dict[str, Figure]:
+    corrections, balanced = evidence.corrections, evidence.balanced
     stress = np.linalg.norm(balanced.cauchy_stress, axis=(1, 2)).max()
-    violation = max(float(yield_values(ground, balanced).max()), 0.0) / stress
+    violation = max(float(yield_values(evidence.ground, balanced).max()), 0.0) / stress
     what = "stress change over deviatoric stress at the points returned to the yield surface"
     return {
         "yield_correction_share": Figure(
@@ -177,26 +172,23 @@ def _yield_figures(
     }
 
 
-def _equilibrium_figures(
-    ground: Ground,
-    problem: EquilibriumProblem,
-    report: EquilibrationReport,
-    options: HandoffOptions,
-) -> dict[str, Figure]:
+def _equilibrium_figures(evidence: Evidence) -> dict[str, Figure]:
+    problem, report = evidence.problem, evidence.report
     undisturbed = geostatic_state(
-        ground,
+        evidence.ground,
         problem.integration_positions,
         problem.interface_positions,
         problem.interface_normals,
     )
     what = "out-of-balance force over the weight of the soil"
+    limit = evidence.options.max_out_of_balance
     return {
         "out_of_balance_geostatic": Figure(
             problem.out_of_balance(undisturbed), "", f"{what}: geostatic stress on this mesh"
         ),
         "out_of_balance_before": Figure(report.out_of_balance_before, "", f"{what}: transferred"),
         "out_of_balance_after": Figure(
-            report.out_of_balance_after, "", f"{what}: equilibrated", options.max_out_of_balance
+            report.out_of_balance_after, "", f"{what}: equilibrated", limit
         ),
         "equilibration_stress_change": Figure(
             report.stress_change, "", "relative L2 stress change in the equilibration"
@@ -207,67 +199,55 @@ def _equilibrium_figures(
     }
 
 
-def _reaction_figures(
-    installed: InstalledState,
-    problem: EquilibriumProblem,
-    transferred: FEState,
-    balanced: FEState,
-    options: HandoffOptions,
-) -> dict[str, Figure]:
-    points = installed.interface
+def _reaction_figures(evidence: Evidence) -> dict[str, Figure]:
+    points, problem = evidence.installed.interface, evidence.problem
     geometry = problem.interface_normals, problem.interface_areas, problem.interface_parts
+    active_area = points.area * points.is_active
     forces = {
-        "mpm": pile_forces(
-            points.traction, points.normal, points.area * points.is_active, points.part
-        ),
-        "transferred": pile_forces(transferred.interface_traction, *geometry),
-        "equilibrated": pile_forces(balanced.interface_traction, *geometry),
+        "mpm": pile_forces(points.traction, points.normal, active_area, points.part),
+        "transferred": pile_forces(evidence.transferred.interface_traction, *geometry),
+        "equilibrated": pile_forces(evidence.balanced.interface_traction, *geometry),
     }
-    total = SYMMETRY_FACTOR * float(installed.pile.reaction[-1])
-    figures = {
+    parts = {
         f"pile_{part.name.lower()}_force_{stage}": Figure(
             force[part], "N", f"upward soil reaction on the {part.name.lower()}: {stage}"
         )
         for stage, force in forces.items()
         for part in PilePart
     }
+    before = SYMMETRY_FACTOR * float(evidence.installed.pile.reaction[VERTICAL])
     after = sum(forces["equilibrated"].values())
-    figures["pile_reaction_mpm"] = Figure(total, "N", "upward soil reaction on the pile: mpm")
-    figures["pile_reaction_equilibrated"] = Figure(
-        after, "N", "upward soil reaction on the pile: equilibrated"
-    )
-    figures["pile_reaction_change"] = Figure(
-        _relative_difference(after, total),
-        "",
-        "pile reaction, finite elements against material points",
-        options.max_reaction_change,
-    )
-    return figures
-
-
-def _volume_figures(
-    points: MaterialPoints, ground: Ground, problem: EquilibriumProblem
-) -> dict[str, Figure]:
-    volumes = float(points.volume.sum()), float(problem.integration_volumes.sum())
-    masses = float(points.mass.sum()), ground.unit_weight / GRAVITY * volumes[1]
-    return {
-        "volume_mpm": Figure(volumes[0], "m^3", "volume of the material points"),
-        "volume_fe": Figure(volumes[1], "m^3", "volume of the finite elements"),
-        "volume_difference": Figure(
-            _relative_difference(volumes[1], volumes[0]),
+    what = "upward soil reaction on the pile"
+    return parts | {
+        "pile_reaction_mpm": Figure(before, "N", f"{what}: mpm"),
+        "pile_reaction_equilibrated": Figure(after, "N", f"{what}: equilibrated"),
+        "pile_reaction_change": Figure(
+            _relative_difference(after, before),
             "",
-            "volume, finite elements against material points",
-            MAX_VOLUME_DIFFERENCE,
-        ),
-        "mass_mpm": Figure(masses[0], "kg", "mass of the material points"),
-        "mass_fe": Figure(masses[1], "kg", "mass of the finite elements"),
-        "mass_difference": Figure(
-            _relative_difference(masses[1], masses[0]),
-            "",
-            "mass, finite elements against material points",
-            MAX_VOLUME_DIFFERENCE,
+            "pile reaction, finite elements against material points",
+            evidence.options.max_reaction_change,
         ),
     }
+
+
+def _volume_figures(evidence: Evidence) -> dict[str, Figure]:
+    points = evidence.installed.material_points
+    density = evidence.ground.unit_weight / GRAVITY
+    volume_fe = float(evidence.problem.integration_volumes.sum())
+    figures: dict[str, Figure] = {}
+    for name, unit, mpm, fe in (
+        ("volume", "m^3", float(points.volume.sum()), volume_fe),
+        ("mass", "kg", float(points.mass.sum()), density * volume_fe),
+    ):
+        figures[f"{name}_mpm"] = Figure(mpm, unit, f"{name} of the material points")
+        figures[f"{name}_fe"] = Figure(fe, unit, f"{name} of the finite elements")
+        figures[f"{name}_difference"] = Figure(
+            _relative_difference(fe, mpm),
+            "",
+            f"{name}, finite elements against material points",
+            MAX_VOLUME_DIFFERENCE,
+        )
+    return figures
 
 
 def _relative_difference(value: float, reference: float) -> float:

@@ -24,7 +24,7 @@ def state(site) -> FEState:
 
 
 def test_no_stress_is_left_outside_the_yield_surface(site, state):
-    corrected, corrections = admissible_state(site.ground, state)
+    corrected, corrections = admissible_state(site.ground, site.interface, np.zeros((0, 2)), state)
     largest = np.abs(state.cauchy_stress).max()
     assert yield_values(site.ground, state).max() > 0.1 * largest
     assert yield_values(site.ground, corrected).max() <= 1e-6 * largest
@@ -34,7 +34,7 @@ def test_no_stress_is_left_outside_the_yield_surface(site, state):
 
 
 def test_admissible_stresses_and_all_mean_stresses_are_untouched(site, state):
-    corrected, _ = admissible_state(site.ground, state)
+    corrected, _ = admissible_state(site.ground, site.interface, np.zeros((0, 2)), state)
     inside = yield_values(site.ground, state) <= 0.0
     assert 100 < inside.sum() < 400
     assert np.abs(corrected.cauchy_stress - state.cauchy_stress)[inside].max() < 1e-9
@@ -44,7 +44,7 @@ def test_admissible_stresses_and_all_mean_stresses_are_untouched(site, state):
 
 
 def test_elastic_strain_carries_the_corrected_stress(site, state):
-    corrected, _ = admissible_state(site.ground, state)
+    corrected, _ = admissible_state(site.ground, site.interface, np.zeros((0, 2)), state)
     expected = elastic_strain_of(site.ground, corrected.material, corrected.cauchy_stress)
     assert corrected.elastic_strain == pytest.approx(expected, abs=1e-14)
 
@@ -54,7 +54,9 @@ def test_size_of_a_correction_is_relative_to_the_deviator(site):
     calm = geostatic_state(site.ground, np.array([[2.0, 0.0]]), np.zeros((0, 2)), np.zeros((0, 2)))
     stress = np.zeros((1, 3, 3))
     stress[0, 0, 1] = stress[0, 1, 0] = 40e3
-    corrected, corrections = admissible_state(site.ground, calm._replace(cauchy_stress=stress))
+    corrected, corrections = admissible_state(
+        site.ground, site.interface, np.zeros((0, 2)), calm._replace(cauchy_stress=stress)
+    )
     assert corrected.cauchy_stress[0, 0, 1] == pytest.approx(20e3)
     assert corrections == pytest.approx((1.0, 0.5, 0.5))
 

@@ -139,3 +139,20 @@ def test_nearest_point_is_the_nearest_visible_one():
 def test_too_few_points_are_named():
     with pytest.raises(ValueError, match=r"fewer than handoff\.neighbours"):
         least_squares_weights(np.zeros((5, 2)), np.ones(5), np.zeros((1, 2)), 8)
+
+
+@pytest.mark.gmsh
+def test_weights_do_not_depend_on_the_number_of_threads(site, build):
+    import numba
+
+    points = build.points(site.mesh(0.1), site.ground)
+    targets, _ = build.integration_points(site.mesh(0.1))
+    before, tables = numba.get_num_threads(), []
+    try:
+        for threads in {1, numba.config.NUMBA_NUM_THREADS}:
+            numba.set_num_threads(threads)
+            tables.append(least_squares_weights(points.position, points.volume, targets, 32, PILE))
+    finally:
+        numba.set_num_threads(before)
+    for first, second in zip(tables[0], tables[-1], strict=True):
+        assert np.array_equal(first, second)
