@@ -68,14 +68,16 @@ def fill_cells(
     carry.vertex_fill(
         mesh.cell_nodes, cell.n_vertices, geometry.volume, order, start, points, filled, capacity
     )
+    vertex_fill = filled / np.where(capacity > 0.0, capacity, 1.0)
     vertices = mesh.cell_nodes[:, : cell.n_vertices]
     volume = np.bincount(points.cell, weights=points.volume, minlength=n_cells)
     return CellFill(
         point_order=order,
         cell_start=start,
         share=volume / geometry.volume,
+        vertex_fill=vertex_fill,
         is_active=np.diff(start) > 0,
-        is_interior=(filled[vertices] > threshold * capacity[vertices]).all(axis=1),
+        is_interior=(vertex_fill[vertices] > threshold).all(axis=1),
         cell_volume=geometry.volume,
     )
 

@@ -44,6 +44,8 @@ class CellFill(NamedTuple):
     """First entry of each cell in ``point_order``, (n_cells + 1,)."""
     share: np.ndarray
     """Volume of the material points over cell volume, (n_cells,)."""
+    vertex_fill: np.ndarray
+    """Soil volume over cell volume around each vertex, (n_nodes,); zero at other nodes."""
     is_active: np.ndarray
     """The cell holds material points, (n_cells,) bool."""
     is_interior: np.ndarray

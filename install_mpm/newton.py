@@ -106,10 +106,19 @@ def _backtrack(
 def convergence_order(residuals: np.ndarray) -> float:
     """Return the order p of the end of a residual history, r_k+1 ~ r_k^p; NaN if there are fewer than three residuals.
 
-    The last three residuals above round-off are used: p = ln(r_3 / r_2) / ln(r_2 / r_1).
+    Three successive residuals give p = ln(r_3 / r_2) / ln(r_2 / r_1).  The last three above round-off are used; if one
+    more lies below, it can only be too large for its order, so its triple counts where it gives more.
     """
-    above = residuals[residuals > ROUND_OFF]
-    if len(above) < 3:
-        return float("nan")
-    first, second, third = np.log(above[-3:])
-    return float((third - second) / (second - first)) if second < first else 0.0
+    n_above = int(np.count_nonzero(residuals > ROUND_OFF))
+    orders = [
+        _order_of_three(residuals[last - 3 : last])
+        for last in (n_above, n_above + 1)
+        if 3 <= last <= len(residuals)
+    ]
+    return max(orders, default=float("nan"))
+
+
+def _order_of_three(residuals: np.ndarray) -> float:
+    """Return the order of three successive residuals, 0 if they do not fall."""
+    first, second, third = np.log(residuals)
+    return float((third - second) / (second - first)) if third < second < first else 0.0

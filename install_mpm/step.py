@@ -30,6 +30,10 @@ from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import PileMotion
 
 
+LEVEL_FILL = 0.4
+"""Fill of a vertex from which on the facets below it count as covered; on a level surface it is about one half."""
+
+
 class StepCounts(NamedTuple):
     """Irregularities of a step that were treated and are reported."""
 
@@ -104,11 +108,19 @@ def step(
 def switch_on(
     interface: InterfacePoints, fill: CellFill, model: Discretisation
 ) -> InterfacePoints:
-    """Return the interface with the points active that lie beside an interior cell; others lose their traction."""
-    is_interior = fill.is_interior & fill.is_active
-    is_active = np.repeat(is_interior[model.elements.cell], len(model.elements.weights))
+    """Return the interface with the points active that lie beside soil; others lose their traction.
+
+    A facet at the ground surface counts with the share of it that soil covers, judged by its emptier vertex.
+    """
+    elements = model.elements
+    ends = elements.nodes[:, : min(2, elements.nodes.shape[1])]
+    covered = np.minimum(fill.vertex_fill[ends].min(axis=1, initial=1.0) / LEVEL_FILL, 1.0)
+    is_beside_soil = fill.is_active[elements.cell] & (covered > 0.0)
+    n_points = len(elements.weights)
+    is_active = np.repeat(is_beside_soil, n_points)
     return interface._replace(
         is_active=is_active.astype(np.int64),
+        area=interface.area * np.repeat(np.where(is_beside_soil, covered, 0.0), n_points),
         traction=np.where(is_active[:, None], interface.traction, 0.0),
     )
 
