@@ -118,6 +118,9 @@ class LoadStep:
         self._fixed_dofs = np.flatnonzero(model.is_fixed)
         lever = np.abs(model.interface.positions).max(initial=0.0) or 1.0
         self._pile_scale = np.array([1.0, 1.0, 1.0 / lever])
+        self._start_reference = 0.0
+        unmoved = self.evaluate(Unknowns(np.zeros_like(self.support_motion), np.zeros(3)))
+        self._start_reference = self._reference(unmoved.soil_residual, unmoved.pile_force)
 
     def solve(self, guess: Unknowns | None) -> Step:
         """Return the accepted step; see ``ServiceProblem.solve`` for guess and errors."""
@@ -164,6 +167,8 @@ class LoadStep:
         pile_force = internal_pile_force - model.pile_weight
         free_soil = np.where(model.is_fixed, 0.0, soil_residual)
         loaded_pile = np.where(self.control.is_loaded, pile_force - self.control.load, 0.0)
+        reference = self._reference(soil_residual, pile_force)
+        is_valid = soil.n_failed == 0
         return Trial(
             unknowns,
             soil,
@@ -171,27 +176,28 @@ class LoadStep:
             soil_residual,
             pile_force,
             np.concatenate([free_soil.ravel(), loaded_pile]),
-            self._relative(free_soil, loaded_pile, soil_residual, pile_force, soil.n_failed),
+            self._relative(free_soil, loaded_pile, reference) if is_valid else float("nan"),
         )
 
-    def _relative(
-        self,
-        free_soil: np.ndarray,
-        loaded_pile: np.ndarray,
-        soil_residual: np.ndarray,
-        pile_force: np.ndarray,
-        n_failed: int,
-    ) -> float:
-        """Return the out-of-balance force over external force, support reaction and pile force."""
-        reference = (
+    def _reference(self, soil_residual: np.ndarray, pile_force: np.ndarray) -> float:
+        """Return external force plus support reaction plus load or reaction of the pile, in N."""
+        pile = np.where(self.control.is_loaded, self.control.load, pile_force)
+        return float(
             np.linalg.norm(self.external_force)
             + np.linalg.norm(soil_residual[self.model.is_fixed])
-            + np.linalg.norm(self._pile_scale * pile_force)
+            + np.linalg.norm(self._pile_scale * pile)
         )
+
+    def _relative(self, free_soil: np.ndarray, loaded_pile: np.ndarray, reference: float) -> float:
+        """Return the out-of-balance force over the larger reference, now or at the step's start.
+
+        A step that takes all load away ends at a reference of zero.
+        """
         residual = np.linalg.norm(free_soil) + np.linalg.norm(self._pile_scale * loaded_pile)
-        if n_failed:
-            return float("nan")
-        return float(residual / reference) if residual > 0.0 else 0.0
+        reference = max(reference, self._start_reference)
+        if residual == 0.0:
+            return 0.0
+        return float(residual / reference) if reference > 0.0 else 1.0
 
     def _jumps(self, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         """Return what the prescribed displacements (n_dofs,) and motions (3,) still lack."""

@@ -71,7 +71,7 @@ class ServiceProblem:
         self._soil, self._interface = SoilForms(mesh), InterfaceForms(mesh)
         self.gravity = self._soil.weight(ground.unit_weight)
         strength = undrained_shear_strength(ground, self._interface.positions[:, 1])
-        self._model = Model(
+        self.model = Model(
             soil=self._soil,
             interface=self._interface,
             solver=TangentSolver(self._soil.matrix, self._soil.row_of_dof),
@@ -124,7 +124,7 @@ class ServiceProblem:
     def pile_load(self, state: FEState) -> np.ndarray:
         """Return the load (3,) in N, N, N m that holds the pile against soil and weight."""
         _, pile_force = self._interface.forces(state.interface_traction)
-        return pile_force - self._model.pile_weight
+        return pile_force - self.model.pile_weight
 
     def internal_force(self, state: FEState) -> np.ndarray:
         """Return the nodal forces (node, 2) in N of stress and interface traction of ``state``."""
@@ -146,7 +146,7 @@ class ServiceProblem:
                 " give ground.unit_weight"
             )
         residual = self.gravity - self.internal_force(state)
-        return float(np.linalg.norm(residual[~self._model.is_fixed]) / weight)
+        return float(np.linalg.norm(residual[~self.model.is_fixed]) / weight)
 
     def release(self, state: FEState, share: float) -> ReleasedState:
         """Return the state when ``share`` (0 to 1] of the out-of-balance force has gone, pile held.
@@ -198,4 +198,4 @@ class ServiceProblem:
         """
         motion = np.zeros_like(self.gravity) if support_motion is None else support_motion
         external = self.gravity if external_force is None else external_force
-        return LoadStep(self._model, state, control, motion, external).solve(guess)
+        return LoadStep(self.model, state, control, motion, external).solve(guess)

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from handoff.fe_mesh import FacetTag, FEMesh
+from install_mpm.constitutive.parameters import CoulombInterface, VonMises
+from install_mpm.ground import Ground
+from service_fe.problem import ServiceProblem
 
 
 def structured_mesh(x, z, tag_of):
@@ -52,6 +55,11 @@ def box_tags(width, depth):
 
 
 @pytest.fixture(scope="session")
+def make_structured_mesh():
+    return structured_mesh
+
+
+@pytest.fixture(scope="session")
 def box_mesh():
     """Ground of 2 m by 1.5 m, slightly graded."""
     x = np.array([0.0, 0.3, 0.7, 1.2, 2.0])
@@ -82,3 +90,30 @@ def pile_mesh():
         return outer(middle)
 
     return quadratic(vertices[used], triangles.reshape(-1, 3), tag_of)
+
+
+CLAY = VonMises(youngs_modulus=4e6, poissons_ratio=0.49, undrained_shear_strength=20e3)
+CLAY_GROUND = Ground(unit_weight=18e3, k0=0.8, soil=CLAY)
+ADHESIVE = CoulombInterface(normal_stiffness=2e8, shear_stiffness=2e7, adhesion_factor=0.5)
+PILE_WEIGHT = 18e3 * HALF_WIDTH * TIP
+
+
+@pytest.fixture(scope="session")
+def make_pile_problem(pile_mesh):
+    """Pile wished in place in clay, with numerics of one's own."""
+
+    def make(numerics=None):
+        return ServiceProblem(pile_mesh, CLAY_GROUND, ADHESIVE, PILE_WEIGHT, numerics)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def pile_problem(make_pile_problem):
+    """The same with default numerics; keeps no state, so all tests may share it."""
+    return make_pile_problem()
+
+
+@pytest.fixture(scope="session")
+def undisturbed(pile_problem):
+    return pile_problem.wished_in_place_state()

@@ -39,6 +39,7 @@ def test_load_has_reached_its_plateau(footings):
 
 def test_newton_ends_quadratically(footings):
     for footing in footings:
-        orders = np.array([convergence_order(np.array(residuals)) for residuals in footing.residuals])
+        histories = [np.array(residuals) for residuals in footing.residuals]
+        orders = np.array([convergence_order(history) for history in histories])
         assert np.nanmedian(orders) >= 1.8
         assert footing.iterations.max() <= 12
