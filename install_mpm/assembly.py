@@ -14,7 +14,8 @@ from install_mpm._jit import jit
 class SparsityPattern(NamedTuple):
     """Compressed rows of the global matrix, and where every entry of every element block goes.
 
-    The pattern is fixed for a run: dofs that drop out become identity rows, so a solver analyses it once.
+    The pattern is fixed for a run: dofs that drop out become identity rows, so a solver analyses it
+    once.
     """
 
     indptr: np.ndarray
@@ -27,7 +28,9 @@ class SparsityPattern(NamedTuple):
     """Position in the values of each block entry, (n_elements, n_element_dofs, n_element_dofs)."""
 
 
-def sparsity_pattern(connectivities: Sequence[np.ndarray], n_nodes: int, dim: int) -> SparsityPattern:
+def sparsity_pattern(
+    connectivities: Sequence[np.ndarray], n_nodes: int, dim: int
+) -> SparsityPattern:
     """Return the pattern of elements given by their nodes, one array (n_elements, n_element_nodes) per family."""
     families = [
         (nodes[:, :, None] * dim + np.arange(dim)).reshape(len(nodes), nodes.shape[1] * dim)
@@ -37,7 +40,9 @@ def sparsity_pattern(connectivities: Sequence[np.ndarray], n_nodes: int, dim: in
     columns = [np.tile(dofs, (1, dofs.shape[1])).ravel() for dofs in families]
     n_dofs = n_nodes * dim
     diagonal = np.arange(n_dofs)  # every row has its diagonal: inactive dofs become identity rows
-    key = np.concatenate([*rows, diagonal]) * np.int64(n_dofs) + np.concatenate([*columns, diagonal])
+    key = np.concatenate([*rows, diagonal]) * np.int64(n_dofs) + np.concatenate(
+        [*columns, diagonal]
+    )
     entries, inverse = np.unique(key, return_inverse=True)
     indptr = np.searchsorted(entries // n_dofs, np.arange(n_dofs + 1)).astype(np.int32)
     slots, start = [], 0
@@ -52,7 +57,10 @@ def sparsity_pattern(connectivities: Sequence[np.ndarray], n_nodes: int, dim: in
 
 @jit
 def scatter_stiffness(blocks, slots, values):
-    """Add element ``blocks`` (n_elements, n, n) to the matrix ``values`` through ``slots``, in element order."""
+    """Add element ``blocks`` (n_elements, n, n) to the matrix ``values`` through ``slots``.
+
+    In element order.
+    """
     for e in range(slots.shape[0]):
         for i in range(slots.shape[1]):
             for j in range(slots.shape[2]):

@@ -1,4 +1,7 @@
-"""The background mesh: straight-edged cells that follow the pile, decoupled from the material points."""
+"""The background mesh: straight-edged cells that follow the pile.
+
+Decoupled from the material points.
+"""
 
 from __future__ import annotations
 
@@ -21,12 +24,17 @@ class BackgroundMesh(NamedTuple):
     ]
     cell_neighbours: Annotated[
         np.ndarray,
-        Field(("cell", "facet"), "", "cell across the facet opposite each vertex, -1 outside", "int64"),
+        Field(
+            ("cell", "facet"), "", "cell across the facet opposite each vertex, -1 outside", "int64"
+        ),
     ]
 
 
 def make_background_mesh(nodes: np.ndarray, cell_nodes: np.ndarray) -> BackgroundMesh:
-    """Return the mesh of triangles (3 or 6 nodes) at its reference position, with neighbours found."""
+    """Return the mesh of triangles (3 or 6 nodes) at its reference position.
+
+    With neighbours found.
+    """
     return straightened(
         BackgroundMesh(
             nodes=np.ascontiguousarray(nodes, dtype=np.float64),
@@ -38,7 +46,10 @@ def make_background_mesh(nodes: np.ndarray, cell_nodes: np.ndarray) -> Backgroun
 
 
 def facets_opposite_vertices(vertices: np.ndarray) -> np.ndarray:
-    """Return the end nodes of the facets of triangles ``vertices`` (n, 3): (n, 3, 2), facet v opposite vertex v."""
+    """Return the end nodes of the facets of triangles ``vertices`` (n, 3).
+
+    (n, 3, 2), facet v opposite vertex v.
+    """
     return vertices[:, [[1, 2], [2, 0], [0, 1]]]
 
 
@@ -66,12 +77,17 @@ def straightened(mesh: BackgroundMesh) -> BackgroundMesh:
 
 
 def cell_quality(mesh: BackgroundMesh) -> np.ndarray:
-    """Return 2 r_in / r_out of each triangle, (n_cells,): 1 is equilateral, 0 flat, negative inverted."""
+    """Return 2 r_in / r_out of each triangle, (n_cells,).
+
+    1 is equilateral, 0 flat, negative inverted.
+    """
     corners = mesh.nodes[mesh.cell_nodes[:, :3]]
     edges = np.roll(corners, -1, axis=1) - corners
     length = np.linalg.norm(edges, axis=2)
     area = (edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]) / 2.0
-    quality: np.ndarray = 16.0 * area**2 * np.sign(area) / (length.sum(axis=1) * length.prod(axis=1))
+    quality: np.ndarray = (
+        16.0 * area**2 * np.sign(area) / (length.sum(axis=1) * length.prod(axis=1))
+    )
     return quality
 
 

@@ -1,8 +1,9 @@
 """Material points as carriers of state: filling of cells, integration points, and injection.
 
-At the start of a step every integration point takes its state from the material points of its sub-region.  A cell whose
-vertices are all filled beyond a threshold is *interior* and counts with its whole volume; any other cell counts with the
-volume of its points and is held by a soft stiffness that acts within the step only.
+At the start of a step every integration point takes its state from the material points of its
+sub-region.  A cell whose vertices are all filled beyond a threshold is *interior* and counts with
+its whole volume; any other cell counts with the volume of its points and is held by a soft
+stiffness that acts within the step only.
 """
 
 from __future__ import annotations
@@ -19,7 +20,10 @@ from install_mpm.material_points import MaterialPoints
 
 
 class GeostaticGradient(NamedTuple):
-    """Change of the geostatic state per metre of height, by which states are moved between nearby places."""
+    """Change of the geostatic state per metre of height.
+
+    By which states are moved between nearby places.
+    """
 
     strain: np.ndarray
     """Elastic strain, (n_materials, 3, 3) in 1/m."""
@@ -129,16 +133,19 @@ def integration_points(
 
 
 def _density(mass: np.ndarray, volume: np.ndarray, is_empty: np.ndarray) -> np.ndarray:
-    """Return the density of the sub-regions, that of the cell where one is empty, zero where the cell is empty."""
+    """Return the density of the sub-regions, that of the cell where one is empty.
+
+    Zero where the cell is empty.
+    """
     cell_volume = volume.sum(axis=1, keepdims=True)
     of_cell = mass.sum(axis=1, keepdims=True) / np.where(cell_volume > 0.0, cell_volume, 1.0)
-    density: np.ndarray = np.where(is_empty, of_cell, mass / np.where(is_empty, 1.0, volume)).ravel()
+    density: np.ndarray = np.where(
+        is_empty, of_cell, mass / np.where(is_empty, 1.0, volume)
+    ).ravel()
     return density
 
 
-def _mean_of_cell_where_empty(
-    total: np.ndarray, volume: np.ndarray, is_empty: np.ndarray
-) -> None:
+def _mean_of_cell_where_empty(total: np.ndarray, volume: np.ndarray, is_empty: np.ndarray) -> None:
     """Give empty sub-regions of cells with points the volume mean of the cell, in place."""
     cell_volume = volume.sum(axis=1)
     incomplete = np.flatnonzero(is_empty.any(axis=1) & (cell_volume > 0.0))
@@ -156,8 +163,9 @@ def inject(
 ) -> MaterialPoints:
     """Return the points with one more at every empty integration point of an interior cell.
 
-    The new point is split off the largest point of the cell, or of a neighbour where the cell is empty: mass and volume
-    are conserved exactly, and the state is moved with the geostatic gradient.
+    The new point is split off the largest point of the cell, or of a neighbour where the cell is
+    empty: mass and volume are conserved exactly, and the state is moved with the geostatic
+    gradient.
     """
     if not fill.is_interior.any():
         return points
@@ -191,7 +199,11 @@ def _points_near(c: int, fill: CellFill, mesh: BackgroundMesh) -> np.ndarray:
         return own
     neighbours = mesh.cell_neighbours[c]
     return np.concatenate(
-        [fill.point_order[fill.cell_start[n] : fill.cell_start[n + 1]] for n in neighbours if n >= 0]
+        [
+            fill.point_order[fill.cell_start[n] : fill.cell_start[n + 1]]
+            for n in neighbours
+            if n >= 0
+        ]
     )
 
 

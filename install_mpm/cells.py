@@ -1,7 +1,8 @@
 """Reference cells: shape functions, gradients, integration points and vertices.
 
-Triangles have vertices (0, 0), (1, 0), (0, 1) and mid-side nodes in the order 01, 12, 20; quadrilaterals fill
-[-1, 1]^2.  Every cell is straight-edged, so isoparametric and vertex geometry agree.
+Triangles have vertices (0, 0), (1, 0), (0, 1) and mid-side nodes in the order 01, 12, 20;
+quadrilaterals fill [-1, 1]^2.  Every cell is straight-edged, so isoparametric and vertex geometry
+agree.
 """
 
 from __future__ import annotations
@@ -34,7 +35,10 @@ class ReferenceCell(NamedTuple):
     n_vertices: int
     dim: int
     integration_coordinates: np.ndarray
-    """Reference coordinates (n_integration_points, dim); each stands for the sub-region nearest to it."""
+    """Reference coordinates (n_integration_points, dim).
+
+    Each stands for the sub-region nearest to it.
+    """
     volume_shares: np.ndarray
     """Share (n_integration_points,) of the cell volume that belongs to each."""
 
@@ -120,7 +124,10 @@ def sub_region_points(cell: ReferenceCell, per_direction: int) -> tuple[np.ndarr
 
 
 def _sub_region_corners(cell: ReferenceCell) -> np.ndarray:
-    """Return the corners (n_sub_regions, 4, 2) of the sub-regions, one per vertex, anticlockwise."""
+    """Return the corners (n_sub_regions, 4, 2) of the sub-regions, one per vertex.
+
+    Anticlockwise.
+    """
     if cell.cell_type == _QUAD4:
         vertices = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     else:
@@ -128,6 +135,11 @@ def _sub_region_corners(cell: ReferenceCell) -> np.ndarray:
     centre = vertices.mean(axis=0)
     following, previous = np.roll(vertices, -1, axis=0), np.roll(vertices, 1, axis=0)
     return np.stack(
-        [vertices, (vertices + following) / 2, np.broadcast_to(centre, vertices.shape), (vertices + previous) / 2],
+        [
+            vertices,
+            (vertices + following) / 2,
+            np.broadcast_to(centre, vertices.shape),
+            (vertices + previous) / 2,
+        ],
         axis=1,
     )

@@ -1,8 +1,8 @@
 """Axes, signs and units: the one place where they are fixed (docs/conventions.md explains them).
 
-SI without prefix in memory and in files; tension positive; z up with the ground surface at z = 0; the pile axis is
-the z axis.  In two dimensions positions are stored as (x, z) or (r, z), so the vertical is tensor axis 1 and the
-out-of-plane or hoop direction is always tensor axis 2.
+SI without prefix in memory and in files; tension positive; z up with the ground surface at z = 0;
+the pile axis is the z axis.  In two dimensions positions are stored as (x, z) or (r, z), so the
+vertical is tensor axis 1 and the out-of-plane or hoop direction is always tensor axis 2.
 """
 
 from __future__ import annotations
@@ -58,5 +58,8 @@ CONVENTIONS = (
 
 
 def conventions_hash() -> str:
-    """Return the hash that a state file carries, so that a change of convention cannot go unnoticed."""
+    """Return the hash that a state file carries.
+
+    So that a change of convention cannot go unnoticed.
+    """
     return hashlib.sha256("\n".join(CONVENTIONS).encode()).hexdigest()[:16]

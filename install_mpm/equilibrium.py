@@ -67,7 +67,10 @@ def youngs_modulus(materials: Materials) -> np.ndarray:
 
 
 def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisation) -> CellOptions:
-    """Return the stiffnesses that act within a step only: volumetric term and soft partly filled cells."""
+    """Return the stiffnesses that act within a step only.
+
+    Volumetric term and soft partly filled cells.
+    """
     n_per_cell = len(model.cell.volume_shares)
     modulus = youngs_modulus(model.materials)[points.material[points.cell_start[:-1]]]
     missing = np.where(fill.is_interior, 0.0, np.maximum(1.0 - fill.share, 0.0))

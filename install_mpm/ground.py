@@ -22,7 +22,9 @@ class Ground:
 
 
 def geostatic_stress(ground: Ground, height: np.ndarray, vertical: int) -> np.ndarray:
-    """Return the initial Cauchy stress (n, 3, 3) in Pa at ``height`` (n,) in m; zero above the surface.
+    """Return the initial Cauchy stress (n, 3, 3) in Pa at ``height`` (n,) in m.
+
+    Zero above the surface.
 
     ``vertical`` is the index of the vertical axis; sigma_v = unit_weight * z, sigma_h = K0 sigma_v.
     """
@@ -34,7 +36,10 @@ def geostatic_stress(ground: Ground, height: np.ndarray, vertical: int) -> np.nd
 
 
 def undrained_shear_strength(ground: Ground, height: np.ndarray) -> np.ndarray:
-    """Return the undrained shear strength (n,) in Pa of undisturbed ground at ``height``; zero if it has none."""
+    """Return the undrained shear strength (n,) in Pa of undisturbed ground at ``height``.
+
+    Zero if it has none.
+    """
     soil = ground.soil
     if not isinstance(soil, VonMises):
         return np.zeros(len(height))

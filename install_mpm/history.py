@@ -18,19 +18,20 @@ class History(NamedTuple):
 
     penetration: Annotated[np.ndarray, _per_step("m", "pile penetration at the end of the step")]
     crowd_force: Annotated[
-        np.ndarray, _per_step("N", "force that the rig applies downward: soil reaction less pile weight")
+        np.ndarray,
+        _per_step("N", "force that the rig applies downward: soil reaction less pile weight"),
     ]
     base_force: Annotated[np.ndarray, _per_step("N", "upward soil reaction on the pile base")]
     shaft_force: Annotated[np.ndarray, _per_step("N", "upward soil reaction on the pile shaft")]
     iterations: Annotated[np.ndarray, _per_step("", "Newton iterations", "int64")]
-    residual: Annotated[
-        np.ndarray, _per_step("", "relative out-of-balance force at acceptance")
-    ]
+    residual: Annotated[np.ndarray, _per_step("", "relative out-of-balance force at acceptance")]
     convergence_order: Annotated[
         np.ndarray,
         _per_step("", "order of the last Newton iterations; NaN if too few", may_be_nan=True),
     ]
-    cuts: Annotated[np.ndarray, _per_step("", "times the step was halved before it converged", "int64")]
+    cuts: Annotated[
+        np.ndarray, _per_step("", "times the step was halved before it converged", "int64")
+    ]
     empty_cells: Annotated[
         np.ndarray, _per_step("", "cells below the fill threshold beside filled ones", "int64")
     ]
@@ -57,6 +58,7 @@ class History(NamedTuple):
 
 def append(history: History, row: dict[str, object]) -> History:
     """Return the history with one more step; ``row`` maps every field to its value."""
+
     def joined(name: str) -> np.ndarray:
         old = getattr(history, name)
         new = np.asarray(row[name], dtype=old.dtype)[None]

@@ -85,8 +85,9 @@ def install(
 ) -> InstalledState:
     """Return the ground and the pile after installation.
 
-    The first step moves nothing: it shows that the geostatic start is in equilibrium.  ``resume_from`` is a state of
-    the same case that an observer was given; the result is then bit-equal to that of an uninterrupted run.
+    The first step moves nothing: it shows that the geostatic start is in equilibrium.
+    ``resume_from`` is a state of the same case that an observer was given; the result is then
+    bit-equal to that of an uninterrupted run.
 
     Raises
     ------
@@ -140,7 +141,10 @@ def _set_up(
 
 
 def _supports(mesh: BackgroundMesh, box: Box) -> np.ndarray:
-    """Return which dofs are held, (n_nodes, 2) bool: rollers on symmetry axis and side, fixed bottom."""
+    """Return which dofs are held, (n_nodes, 2) bool.
+
+    Rollers on symmetry axis and side, fixed bottom.
+    """
     x, z = mesh.reference_nodes.T
     is_held = np.zeros(mesh.nodes.shape, dtype=bool)
     is_held[:, 0] = (np.abs(x) < ON_BOUNDARY) | (np.abs(x - box.width) < ON_BOUNDARY)
@@ -160,9 +164,7 @@ def _geostatic_state(
         material_points=seed_points(mesh, problem.model.cell, problem.ground, per_direction),
         background_mesh=mesh,
         interface=interface,
-        pile=PileState(
-            np.array(0.0), np.array(0.0), np.array(problem.pile.embedment), np.zeros(2)
-        ),
+        pile=PileState(np.array(0.0), np.array(0.0), np.array(problem.pile.embedment), np.zeros(2)),
         history=empty_history(),
         control=StepControl(
             np.array(problem.programme.step), np.array(0), np.array(0), np.zeros_like(mesh.nodes)
@@ -182,7 +184,10 @@ def _next_step(problem: Installation, state: InstalledState) -> float:
 def _advance(
     problem: Installation, state: InstalledState, advance: float
 ) -> tuple[InstalledState, bool]:
-    """Try one step; return the new state, or the old one with half the step size, and whether it was accepted."""
+    """Try one step; return the new state, or the old one with half the step size.
+
+    And whether it was accepted.
+    """
     control = state.control
     penetration = float(state.pile.penetration) + advance
     scale = advance / float(control.step) if advance else 0.0
@@ -237,7 +242,7 @@ def _accept(
     problem: Installation, state: InstalledState, advance: float, result: StepResult
 ) -> InstalledState:
     """Return the state after a converged step, with its row of the history."""
-    control, numerics = state.control, problem.numerics
+    control = state.control
     interface = pile_surface.follow(
         result.interface, problem.model.elements, result.mesh, problem.ground, problem.law
     )
@@ -256,12 +261,8 @@ def _accept(
         material_points=result.points,
         background_mesh=result.mesh,
         interface=interface,
-        pile=PileState(
-            np.array(penetration), np.array(0.0), np.array(tip_depth), force
-        ),
-        history=append(
-            state.history, _history_row(problem, state, result, penetration, tip_depth)
-        ),
+        pile=PileState(np.array(penetration), np.array(0.0), np.array(tip_depth), force),
+        history=append(state.history, _history_row(problem, state, result, penetration, tip_depth)),
         control=StepControl(np.array(size), np.array(0), steps_since_cut, displacement),
         case_text=state.case_text,
         kinematics=state.kinematics,

@@ -1,8 +1,8 @@
 """Integration points: where the equilibrium of a step is evaluated, with the state they start from.
 
-The default discretisation lets material points *carry* the state: each integration point of a cell takes the volume
-average over the material points of its sub-region (``docs/method.md``).  A scheme in which the material points are
-themselves the integration points fills the same record.
+The default discretisation lets material points *carry* the state: each integration point of a cell
+takes the volume average over the material points of its sub-region (``docs/method.md``).  A scheme
+in which the material points are themselves the integration points fills the same record.
 """
 
 from __future__ import annotations
@@ -49,13 +49,19 @@ class CellFill(NamedTuple):
     is_active: np.ndarray
     """The cell holds material points, (n_cells,) bool."""
     is_interior: np.ndarray
-    """All vertices are filled beyond the threshold: the cell counts with its whole volume, (n_cells,) bool."""
+    """All vertices are filled beyond the threshold.
+
+    The cell counts with its whole volume, (n_cells,) bool.
+    """
     cell_volume: np.ndarray
     """Volume of the cells, (n_cells,) in m^3."""
 
 
 class Trial(NamedTuple):
-    """State at the integration points for a trial displacement; filled by the kernel, stored nowhere."""
+    """State at the integration points for a trial displacement.
+
+    Filled by the kernel, stored nowhere.
+    """
 
     elastic_log_strain: np.ndarray
     """(n, 3, 3)"""

@@ -1,7 +1,8 @@
 """Zero-thickness interface elements between soil and pile (paper, section 2.3 and 2.4).
 
-The general element joins two deformable sides by paired facets: w = u_pile - u_soil = B u (eqs 5-9).  Where the pile is
-rigid its side has no nodes and u_pile is the prescribed rigid motion of the point.
+The general element joins two deformable sides by paired facets: w = u_pile - u_soil = B u (eqs
+5-9).  Where the pile is rigid its side has no nodes and u_pile is the prescribed rigid motion of
+the point.
 """
 
 from __future__ import annotations
@@ -17,7 +18,10 @@ class InterfaceElements(NamedTuple):
     """Topology of the interface: paired facets and the integration rule on them."""
 
     nodes: np.ndarray
-    """Soil-side nodes, then pile-side nodes where the pile is deformable: (n_elements, n_sides * n_facet_nodes)."""
+    """Soil-side nodes, then pile-side nodes where the pile is deformable.
+
+    (n_elements, n_sides * n_facet_nodes).
+    """
     cell: np.ndarray
     """Background cell on the soil side, (n_elements,) int64."""
     shape_values: np.ndarray
@@ -70,10 +74,13 @@ def facet_rule(n_facet_nodes: int, n_points: int) -> tuple[np.ndarray, np.ndarra
 
 
 def frames(normals: np.ndarray, rotation: float) -> np.ndarray:
-    """Return the local axes (n, 2, 2) of interface points: rows tangent and normal, turned by ``rotation``.
+    """Return the local axes (n, 2, 2) of interface points.
 
-    The gap is measured in the frame of the middle of a step, the traction acts in that of its end: a chord of a circle
-    has no normal component in the mid-step frame, and a false penetration in any other.
+    Rows tangent and normal, turned by ``rotation``.
+
+    The gap is measured in the frame of the middle of a step, the traction acts in that of its end:
+    a chord of a circle has no normal component in the mid-step frame, and a false penetration in
+    any other.
     """
     cosine, sine = np.cos(rotation), np.sin(rotation)
     normal = normals @ np.array([[cosine, sine], [-sine, cosine]])
@@ -89,6 +96,9 @@ def global_traction(points: InterfacePoints) -> np.ndarray:
 
 
 def reaction(points: InterfacePoints, selected: np.ndarray | None = None) -> np.ndarray:
-    """Return the force (dim,) in N of the soil on the modelled part of the pile, on ``selected`` points or all."""
+    """Return the force (dim,) in N of the soil on the modelled part of the pile.
+
+    On ``selected`` points or all.
+    """
     force = -global_traction(points) * points.area[:, None]
     return np.asarray(force.sum(axis=0) if selected is None else force[selected].sum(axis=0))

@@ -1,7 +1,7 @@
 """Linear solvers as values: each function returns ``solve(values, right_hand_side) -> solution``.
 
-The sparsity pattern is given once, so analysis is done once.  The tangent is not symmetric in general (mean dilatation,
-non-associated flow, friction), so only LU methods are offered here.
+The sparsity pattern is given once, so analysis is done once.  The tangent is not symmetric in
+general (mean dilatation, non-associated flow, friction), so only LU methods are offered here.
 """
 
 from __future__ import annotations

@@ -11,13 +11,19 @@ from install_mpm.pile import Pile
 
 GMSH_TRIANGLE_6 = 9
 FINE_REACH = 1.0
-"""The size at the pile tip is kept within this many half-widths of the base, and along the shaft at half that."""
+"""The size at the pile tip is kept within this many half-widths of the base.
+
+And along the shaft at half that.
+"""
 
 
-def generate_background_mesh(pile: Pile, box: Box, options: BackgroundMeshOptions) -> BackgroundMesh:
+def generate_background_mesh(
+    pile: Pile, box: Box, options: BackgroundMeshOptions
+) -> BackgroundMesh:
     """Return a mesh of 6-node triangles conforming to the pile and to the level ground surface.
 
-    It covers the ground and the headroom above it, and is finest at the base and along the shaft of the pile.
+    It covers the ground and the headroom above it, and is finest at the base and along the shaft of
+    the pile.
     """
     gmsh.initialize(interruptible=False)
     try:
@@ -46,8 +52,7 @@ def _draw(pile: Pile, box: Box) -> None:
     ]
     points = [geo.addPoint(x, z, 0.0) for x, z in corners]
     soil_lines = [
-        geo.addLine(start, end)
-        for start, end in zip(points, points[1:] + points[:1], strict=True)
+        geo.addLine(start, end) for start, end in zip(points, points[1:] + points[:1], strict=True)
     ]
     above = [geo.addPoint(x, box.headroom, 0.0) for x in (box.width, pile.half_width)]
     sides = [

@@ -1,7 +1,10 @@
-"""Newton's method with backtracking: knows a residual, a tangent and a linear solver, and nothing of soil.
+"""Newton's method with backtracking.
 
-Order of evaluation: residual and tangent at the start; then solve, step, and evaluate again, halving the step while the
-trial is inadmissible or the residual grows.  The last *accepted* iterate is returned; nothing is kept on failure.
+Knows a residual, a tangent and a linear solver, and nothing of soil.
+
+Order of evaluation: residual and tangent at the start; then solve, step, and evaluate again,
+halving the step while the trial is inadmissible or the residual grows.  The last *accepted* iterate
+is returned; nothing is kept on failure.
 """
 
 from __future__ import annotations
@@ -54,8 +57,8 @@ def solve_newton(
 ) -> NewtonResult:
     """Return the solution of ``evaluate(x).residual = 0`` from ``start`` (n_dofs,).
 
-    Convergence means |residual| <= tolerance * reference; at least one correction is always made, unless the start is
-    exact to round-off.
+    Convergence means |residual| <= tolerance * reference; at least one correction is always made,
+    unless the start is exact to round-off.
     """
     x = start
     state = evaluate(x)
@@ -87,7 +90,10 @@ def _backtrack(
     correction: np.ndarray,
     residual: float,
 ) -> tuple[np.ndarray, Evaluation]:
-    """Return the first trial that is admissible and does not increase the residual, else the best one."""
+    """Return the first trial that is admissible and does not increase the residual.
+
+    Else the best one.
+    """
     best: tuple[np.ndarray, Evaluation] | None = None
     for halving in range(BACKTRACKS + 1):
         trial = x + correction * 0.5**halving
@@ -104,10 +110,13 @@ def _backtrack(
 
 
 def convergence_order(residuals: np.ndarray) -> float:
-    """Return the order p of the end of a residual history, r_k+1 ~ r_k^p; NaN if there are fewer than three residuals.
+    """Return the order p of the end of a residual history, r_k+1 ~ r_k^p.
 
-    Three successive residuals give p = ln(r_3 / r_2) / ln(r_2 / r_1).  The last three above round-off are used; if one
-    more lies below, it can only be too large for its order, so its triple counts where it gives more.
+    NaN if there are fewer than three residuals.
+
+    Three successive residuals give p = ln(r_3 / r_2) / ln(r_2 / r_1).  The last three above
+    round-off are used; if one more lies below, it can only be too large for its order, so its
+    triple counts where it gives more.
     """
     n_above = int(np.count_nonzero(residuals > ROUND_OFF))
     orders = [

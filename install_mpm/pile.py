@@ -21,7 +21,9 @@ class PilePart(IntEnum):
 
 @dataclass(frozen=True)
 class Pile:
-    """Flat-ended pile of a plane-strain half model: x <= half_width, from its tip up through the surface.
+    """Flat-ended pile of a plane-strain half model.
+
+    X <= half_width, from its tip up through the surface.
 
     ``embedment`` is the depth of the tip at the start, at which the pile is wished in place.
     """
@@ -32,11 +34,17 @@ class Pile:
 
 
 SYMMETRY_FACTOR = 2.0
-"""Whole pile over modelled half: histories, curves and reports are for the whole pile, per metre run."""
+"""Whole pile over modelled half.
+
+Histories, curves and reports are for the whole pile, per metre run.
+"""
 
 
 def surface_normals(part: np.ndarray) -> np.ndarray:
-    """Return the exact unit normals (n, 2), from soil to pile, of interface points on ``part`` (n,)."""
+    """Return the exact unit normals (n, 2), from soil to pile.
+
+    Of interface points on ``part`` (n,).
+    """
     normals = np.zeros((len(part), 2))
     normals[part == PilePart.BASE] = (0.0, 1.0)
     normals[part == PilePart.SHAFT] = (-1.0, 0.0)
@@ -44,7 +52,10 @@ def surface_normals(part: np.ndarray) -> np.ndarray:
 
 
 def tangent_of(normals: np.ndarray) -> np.ndarray:
-    """Return the unit tangents (n, 2): the normals turned by +90 degrees; on the shaft they point down."""
+    """Return the unit tangents (n, 2): the normals turned by +90 degrees.
+
+    On the shaft they point down.
+    """
     return np.column_stack([-normals[:, 1], normals[:, 0]])
 
 
@@ -54,7 +65,10 @@ def buried_weight(pile: Pile, tip_depth: float) -> float:
 
 
 class PileMotion(NamedTuple):
-    """Rigid motion of the pile in a step: a translation, then a rotation about the origin (2D: about +y out of page)."""
+    """Rigid motion of the pile in a step: a translation.
+
+    Then a rotation about the origin (2D: about +y out of page).
+    """
 
     translation: np.ndarray
     """(dim,) in m."""

@@ -1,7 +1,10 @@
-"""Annotated NamedTuples of arrays and their HDF5 groups: one definition of shape, type, unit and meaning.
+"""Annotated NamedTuples of arrays and their HDF5 groups.
 
-A state record is a ``NamedTuple`` whose fields are ``Annotated[np.ndarray, Field(...)]``.  The writer, the strict
-reader and the tables in the documentation are all derived from those annotations.
+One definition of shape, type, unit and meaning.
+
+A state record is a ``NamedTuple`` whose fields are ``Annotated[np.ndarray, Field(...)]``.  The
+writer, the strict reader and the tables in the documentation are all derived from those
+annotations.
 """
 
 from __future__ import annotations
@@ -17,14 +20,18 @@ Record = TypeVar("Record", bound=tuple[Any, ...])
 
 
 class StateFileError(ValueError):
-    """A state file cannot be used; the message names the file, the group and the field, and says what to do."""
+    """A state file cannot be used.
+
+    The message names the file, the group and the field, and says what to do.
+    """
 
 
 @dataclass(frozen=True)
 class Field:
     """Describe one array of a record.
 
-    ``shape`` holds integers and names; a name stands for the same extent wherever it occurs in the record.
+    ``shape`` holds integers and names; a name stands for the same extent wherever it occurs in the
+    record.
     """
 
     shape: tuple[int | str, ...]
@@ -44,7 +51,10 @@ def fields_of(record_type: type) -> dict[str, Field]:
 
 
 def write_record(group: h5py.Group, record: Any) -> None:
-    """Write every array of ``record`` as a dataset of ``group``, with unit and meaning as attributes."""
+    """Write every array of ``record`` as a dataset of ``group``.
+
+    With unit and meaning as attributes.
+    """
     for name, field in fields_of(type(record)).items():
         dataset = group.create_dataset(
             name, data=np.asarray(getattr(record, name), dtype=field.dtype, order="C")
@@ -59,7 +69,8 @@ def read_record(group: h5py.Group, record_type: type[Record]) -> Record:
     Raises
     ------
     StateFileError
-        If a dataset is missing, has another shape, type or unit, or holds a number that is not finite.
+        If a dataset is missing, has another shape, type or unit, or holds a number that is not
+        finite.
     """
     extents: dict[str, int] = {}
     arrays = {
@@ -69,9 +80,7 @@ def read_record(group: h5py.Group, record_type: type[Record]) -> Record:
     return record_type(**arrays)
 
 
-def _read_field(
-    group: h5py.Group, name: str, field: Field, extents: dict[str, int]
-) -> np.ndarray:
+def _read_field(group: h5py.Group, name: str, field: Field, extents: dict[str, int]) -> np.ndarray:
     place = f"{group.file.filename}: dataset {group.name}/{name}"
     remedy = "write the file again with the stage that makes it"
     if name not in group:

@@ -16,9 +16,12 @@ from install_mpm.material_points import MaterialPoints
 def seed_points(
     mesh: BackgroundMesh, cell: ReferenceCell, ground: Ground, per_direction: int
 ) -> MaterialPoints:
-    """Return the material points of level ground: every cell below z = 0 filled, K0 stress, elastic strain to match.
+    """Return the material points of level ground.
 
-    The logarithmic strain of the initial stress is referred to the initial configuration, so J = 1 at the start.
+    Every cell below z = 0 filled, K0 stress, elastic strain to match.
+
+    The logarithmic strain of the initial stress is referred to the initial configuration, so J = 1
+    at the start.
     """
     coordinates, shares = sub_region_points(cell, per_direction)
     vertices = mesh.nodes[mesh.cell_nodes[:, : cell.n_vertices]]

@@ -90,12 +90,15 @@ def read_header(file: h5py.File, file_format: str, version: int) -> str:
     Raises
     ------
     StateFileError
-        If the file is of another format, version or convention, or its case does not match its hash.
+        If the file is of another format, version or convention, or its case does not match its
+        hash.
     """
     path, remedy = file.filename, "write it again with this version of screwpile"
     found = file.attrs.get("format")
     if found != file_format:
-        raise StateFileError(f"{path}: attribute format is {found!r}, expected {file_format!r}; give the right file")
+        raise StateFileError(
+            f"{path}: attribute format is {found!r}, expected {file_format!r}; give the right file"
+        )
     if file.attrs.get("version") != version:
         raise StateFileError(
             f"{path}: version {file.attrs.get('version')} of {file_format} is not version {version}; {remedy}"

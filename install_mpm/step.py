@@ -1,9 +1,9 @@
 """One installation step: the method on a page.
 
-    (i)    material points give their state to the integration points of the mesh
-    (ii)   the pile moves, and the mesh finds the displacement at which soil and interface are in equilibrium
-    (iii)  material points take that displacement: they move, strain and return to the yield surface
-    (iv)   the mesh follows the pile, and every material point is located in it again
+(i)    material points give their state to the integration points of the mesh (ii)   the pile moves,
+and the mesh finds the displacement at which soil and interface are in equilibrium (iii)  material
+points take that displacement: they move, strain and return to the yield surface (iv)   the mesh
+follows the pile, and every material point is located in it again
 """
 
 from __future__ import annotations
@@ -29,9 +29,11 @@ from install_mpm.kernels.locate import PROJECTED, locate_points
 from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import PileMotion
 
-
 LEVEL_FILL = 0.4
-"""Fill of a vertex from which on the facets below it count as covered; on a level surface it is about one half."""
+"""Fill of a vertex from which on the facets below it count as covered.
+
+On a level surface it is about one half.
+"""
 
 
 class StepCounts(NamedTuple):
@@ -68,8 +70,9 @@ def step(
 ) -> StepResult:
     """Return the state after the pile has moved by ``motion``.
 
-    ``start`` (n_nodes, dim) is the first trial displacement in m; ``move_mesh`` is the law by which the mesh follows.
-    Nothing that is passed in is changed, so a step that does not converge needs no undo.
+    ``start`` (n_nodes, dim) is the first trial displacement in m; ``move_mesh`` is the law by which
+    the mesh follows. Nothing that is passed in is changed, so a step that does not converge needs
+    no undo.
     """
     geometry = cell_geometry(mesh, model.cell)
     fill = fill_cells(points, mesh, model.cell, geometry, model.numerics.fill_threshold)
@@ -105,12 +108,11 @@ def step(
     )
 
 
-def switch_on(
-    interface: InterfacePoints, fill: CellFill, model: Discretisation
-) -> InterfacePoints:
+def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation) -> InterfacePoints:
     """Return the interface with the points active that lie beside soil; others lose their traction.
 
-    A facet at the ground surface counts with the share of it that soil covers, judged by its emptier vertex.
+    A facet at the ground surface counts with the share of it that soil covers, judged by its
+    emptier vertex.
     """
     elements = model.elements
     ends = elements.nodes[:, : min(2, elements.nodes.shape[1])]
@@ -133,7 +135,10 @@ def carry(
     model: Discretisation,
     gradient: GeostaticGradient,
 ) -> tuple[MaterialPoints, bool]:
-    """Return the material points after the displacement of the step, and whether all of them are sound."""
+    """Return the material points after the displacement of the step.
+
+    And whether all of them are sound.
+    """
     updated = MaterialPoints(*(np.array(field) for field in points))
     status = np.zeros(len(mesh.cell_nodes), dtype=np.int64)
     carry_points(
@@ -145,7 +150,10 @@ def carry(
 
 
 def locate(points: MaterialPoints, mesh: BackgroundMesh) -> int:
-    """Find the cell of every point, in place; return how many had to be brought back from outside the mesh."""
+    """Find the cell of every point, in place.
+
+    Return how many had to be brought back from outside the mesh.
+    """
     status = np.zeros(len(points.cell), dtype=np.int64)
     locate_points(
         mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours, points.position, points.cell,

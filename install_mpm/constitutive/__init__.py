@@ -1,1 +1,4 @@
-"""Constitutive laws shared by the installation (MPM) and the service (FE) stage; imports nothing of the project."""
+"""Constitutive laws shared by the installation (MPM) and the service (FE) stage.
+
+Imports nothing of the project.
+"""

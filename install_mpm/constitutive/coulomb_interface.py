@@ -3,9 +3,10 @@
     t = t_n + D (dw - dw_p) ,  D = diag(k_s, ..., k_n)
     f = |t_s| + t_n tan(phi) - c <= 0 ,   dw_p = lambda dg/dt ,  g = |t_s| + t_n tan(psi)
 
-Local vectors hold the tangential components first and the normal last, (s, n) in two and (s1, s2, n) in three
-dimensions.  The slip direction in the surface follows from |t_s| as a vector norm, so one slip direction is shared by
-all tangential components.  Stresses beyond the cone's apex t_n = c / tan(phi) are returned to it: the interface opens.
+Local vectors hold the tangential components first and the normal last, (s, n) in two and (s1, s2,
+n) in three dimensions.  The slip direction in the surface follows from |t_s| as a vector norm, so
+one slip direction is shared by all tangential components.  Stresses beyond the cone's apex t_n = c
+/ tan(phi) are returned to it: the interface opens.
 """
 
 from __future__ import annotations
@@ -21,8 +22,8 @@ STICK, SLIP, OPEN = 0, 1, 2
 
 def pack(parameters: CoulombInterface, undrained_shear_strength: np.ndarray) -> np.ndarray:
     """Return packed parameters (n, 5) for interface points beside soil of the given strength (n,) in Pa."""
-    cohesion = (
-        parameters.cohesion + parameters.adhesion_factor * np.asarray(undrained_shear_strength)
+    cohesion = parameters.cohesion + parameters.adhesion_factor * np.asarray(
+        undrained_shear_strength
     )
     packed = np.empty((len(cohesion), 5))
     packed[:, NORMAL_STIFFNESS] = parameters.normal_stiffness
@@ -103,7 +104,10 @@ def update_traction(slip_increment, parameters, traction_old, traction, tangent)
 
 @parallel_jit
 def update_all(slip_increment, parameters, traction_old, traction, tangent, status):
-    """Evaluate the law at all interface points, point axis first; the last three arrays are filled."""
+    """Evaluate the law at all interface points, point axis first.
+
+    The last three arrays are filled.
+    """
     for p in prange(slip_increment.shape[0]):
         status[p] = update_traction(
             slip_increment[p], parameters[p], traction_old[p], traction[p], tangent[p]

@@ -1,6 +1,7 @@
 """Model ids, packing of parameters, and evaluation of any soil law at one point or at all points.
 
-Laws are chosen by an integer id in one ``if`` chain: compiled once, kept in numba's disk cache (closures are not).
+Laws are chosen by an integer id in one ``if`` chain: compiled once, kept in numba's disk cache
+(closures are not).
 """
 
 from __future__ import annotations
@@ -48,7 +49,10 @@ def pack(soils: Sequence[SoilParameters]) -> Materials:
 
 
 def state_variable_names(soil: SoilParameters) -> tuple[str, ...]:
-    """Return the names of the state variables of a law, in the order of the columns of ``state_variables``."""
+    """Return the names of the state variables of a law.
+
+    In the order of the columns of ``state_variables``.
+    """
     names: tuple[str, ...] = MODULE_OF[MODEL_OF[type(soil)]].STATE_VARIABLES
     return names
 
@@ -77,13 +81,14 @@ def update_stress(
     state_old : (n_state,)
         State variables at the start of the step.
     stress, elastic_strain, state, tangent
-        Filled: stress (6,) in Pa, elastic strain (6,), state variables (n_state,), consistent tangent
-        d(stress)/d(trial_strain) (6, 6) in Pa.
+        Filled: stress (6,) in Pa, elastic strain (6,), state variables (n_state,), consistent
+        tangent d(stress)/d(trial_strain) (6, 6) in Pa.
 
     Returns
     -------
     int
-        0, or a positive number if the return to the yield surface failed; the step is then made shorter.
+        0, or a positive number if the return to the yield surface failed; the step is then made
+        shorter.
     """
     if model == _VON_MISES:
         return von_mises.update_stress(
@@ -96,7 +101,10 @@ def update_stress(
 
 @jit
 def elastic_strain_from_stress(model, stress, parameters, elastic_strain):
-    """Fill the elastic strain (6,) that belongs to ``stress`` (6,) in Pa; every law so far is Hencky elastic."""
+    """Fill the elastic strain (6,) that belongs to ``stress`` (6,) in Pa.
+
+    Every law so far is Hencky elastic.
+    """
     elastic.elastic_strain_from_stress(stress, parameters, elastic_strain)
 
 
@@ -114,7 +122,8 @@ def update_all(
 ):
     """Evaluate the laws at all points: arrays of ``update_stress`` with the point axis first.
 
-    ``material`` (n,) is the row of ``materials``; the last five arrays are filled, ``status`` (n,) int64.
+    ``material`` (n,) is the row of ``materials``; the last five arrays are filled, ``status`` (n,)
+    int64.
     """
     for p in prange(material.shape[0]):
         row = material[p]

@@ -1,7 +1,7 @@
 """Eigenvalues and eigenvectors of a symmetric 3 x 3 tensor by cyclic Jacobi rotations.
 
-Jacobi is used because it is accurate for repeated eigenvalues, which are the rule in geostatic ground, and allocates
-nothing (Golub and Van Loan 2013, section 8.5).
+Jacobi is used because it is accurate for repeated eigenvalues, which are the rule in geostatic
+ground, and allocates nothing (Golub and Van Loan 2013, section 8.5).
 """
 
 from __future__ import annotations
@@ -15,7 +15,9 @@ MAX_SWEEPS = 30
 
 @jit
 def symmetric_eigen(tensor, values, vectors):
-    """Fill eigenvalues ``values`` (3,) and eigenvectors, the columns of ``vectors`` (3, 3), of ``tensor`` (3, 3).
+    """Fill eigenvalues ``values`` (3,) and eigenvectors, the columns of ``vectors`` (3, 3).
+
+    Of ``tensor`` (3, 3).
 
     ``tensor`` is overwritten.
     """

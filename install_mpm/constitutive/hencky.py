@@ -2,8 +2,9 @@
 
     b_e,trial = dF exp(2 eps_e) dF^T ,   eps_trial = 1/2 ln b_e,trial
 
-The law then works on (eps_trial, tau) as if strains were small, and its consistent tangent D = d tau / d eps_trial is
-turned into the spatial one by the chain rule through ln b (Coombs and Augarde 2020; Charlton et al. 2017).
+The law then works on (eps_trial, tau) as if strains were small, and its consistent tangent D = d
+tau / d eps_trial is turned into the spatial one by the chain rule through ln b (Coombs and Augarde
+2020; Charlton et al. 2017).
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ def trial_log_strain(increment, log_strain, trial, stretches_squared, directions
     log_strain : (3, 3)
         Elastic logarithmic strain at the start of the step.
     trial, stretches_squared, directions
-        Filled: trial strain (6,) Mandel; eigenvalues (3,) and eigenvectors (3, 3), in columns, of b_e,trial.
+        Filled: trial strain (6,) Mandel; eigenvalues (3,) and eigenvectors (3, 3), in columns, of
+        b_e,trial.
     """
     work = np.empty((3, 3))
     left_cauchy_green = np.empty((3, 3))
@@ -71,8 +73,9 @@ def trial_log_strain(increment, log_strain, trial, stretches_squared, directions
 def spatial_tangent(tangent, stretches_squared, directions, dim, spatial):
     """Fill ``spatial`` (3, 3, 3, 3) with d tau_ij / d l_kl, l = d(dF) dF^-1, for k, l < ``dim``.
 
-    ``tangent`` (6, 6) is the consistent tangent of the law; the eigenpairs are those of b_e,trial.  In the eigenbasis
-    d eps_AB = w_AB (l_AB b_B + b_A l_BA) with w the divided difference of (1/2) ln.
+    ``tangent`` (6, 6) is the consistent tangent of the law; the eigenpairs are those of b_e,trial.
+    In the eigenbasis d eps_AB = w_AB (l_AB b_B + b_A l_BA) with w the divided difference of (1/2)
+    ln.
     """
     weight = np.empty((3, 3))
     for a in range(3):
@@ -106,7 +109,10 @@ def spatial_tangent(tangent, stretches_squared, directions, dim, spatial):
 
 @jit
 def _half_log_difference(first, second):
-    """Return (ln first - ln second) / 2 / (first - second), or its limit where the two are equal."""
+    """Return (ln first - ln second) / 2 / (first - second).
+
+    Or its limit where the two are equal.
+    """
     if abs(first - second) <= REPEATED * first:
         return 1.0 / (first + second)
     return 0.5 * np.log(first / second) / (first - second)
@@ -114,7 +120,10 @@ def _half_log_difference(first, second):
 
 @jit
 def small_trial_strain(displacement_gradient, strain, trial):
-    """Fill the trial strain (6,) of infinitesimal kinematics: ``strain`` (3, 3) plus the symmetric gradient."""
+    """Fill the trial strain (6,) of infinitesimal kinematics.
+
+    ``strain`` (3, 3) plus the symmetric gradient.
+    """
     for component in range(6):
         i, j = ROW[component], COLUMN[component]
         trial[component] = SCALE[component] * (
@@ -124,7 +133,10 @@ def small_trial_strain(displacement_gradient, strain, trial):
 
 @jit
 def small_tangent(tangent, dim, spatial):
-    """Fill ``spatial`` (3, 3, 3, 3) with d sigma_ij / d u_k,l of infinitesimal kinematics, for k, l < ``dim``."""
+    """Fill ``spatial`` (3, 3, 3, 3) with d sigma_ij / d u_k,l of infinitesimal kinematics, for k.
+
+    L < ``dim``.
+    """
     for first in range(6):
         i, j = ROW[first], COLUMN[first]
         for second in range(6):

@@ -1,7 +1,7 @@
 """Symmetric 3 x 3 tensors as Mandel six-vectors: the only place that knows their order and scaling.
 
-Order xx, yy, zz, xy, xz, yz with shear components times sqrt(2), so that the dot product of two six-vectors is the
-double contraction of the tensors.
+Order xx, yy, zz, xy, xz, yz with shear components times sqrt(2), so that the dot product of two
+six-vectors is the double contraction of the tensors.
 """
 
 from __future__ import annotations

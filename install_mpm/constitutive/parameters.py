@@ -1,7 +1,7 @@
 """Parameters of the soil and interface laws: unit, range and meaning of each, written once.
 
-The case reader derives its checks from the annotations; ``dispatch.pack`` turns a record into the float row that the
-kernels read.
+The case reader derives its checks from the annotations; ``dispatch.pack`` turns a record into the
+float row that the kernels read.
 """
 
 from __future__ import annotations
@@ -28,10 +28,12 @@ class HenckyElastic:
 
 @dataclass(frozen=True)
 class VonMises:
-    """Undrained clay: Hencky elastic, perfectly plastic at the shear strength ``undrained_shear_strength``.
+    """Undrained clay: Hencky elastic.
 
-    The strength at the original depth d of the material is ``undrained_shear_strength + gradient * d``; it travels
-    with the material as a state variable.
+    Perfectly plastic at the shear strength ``undrained_shear_strength``.
+
+    The strength at the original depth d of the material is ``undrained_shear_strength + gradient *
+    d``; it travels with the material as a state variable.
     """
 
     youngs_modulus: Stiffness
@@ -49,9 +51,10 @@ SoilParameters = HenckyElastic | VonMises
 class CoulombInterface:
     """Pile-soil interface: elastic springs limited by Mohr-Coulomb friction (paper, eqs 10-14).
 
-    The cohesion is ``cohesion + adhesion_factor * undrained_shear_strength`` of the adjacent ground; undrained clay has
-    ``adhesion_factor`` alpha and no friction.  Without friction the interface also carries tension (it is bonded in the
-    normal direction); with friction the tension ends at the apex c / tan(phi).
+    The cohesion is ``cohesion + adhesion_factor * undrained_shear_strength`` of the adjacent
+    ground; undrained clay has ``adhesion_factor`` alpha and no friction.  Without friction the
+    interface also carries tension (it is bonded in the normal direction); with friction the tension
+    ends at the apex c / tan(phi).
     """
 
     normal_stiffness: Annotated[float, Unit("Pa/m"), Gt(0)]

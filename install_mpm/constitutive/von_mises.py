@@ -2,7 +2,8 @@
 
     f = |s| - sqrt(2) s_u <= 0 ,   s = dev(tau)
 
-so that the shear strength in simple shear and in plane strain is s_u (Simo and Hughes 1998, box 3.2).
+so that the shear strength in simple shear and in plane strain is s_u (Simo and Hughes 1998, box
+3.2).
 """
 
 from __future__ import annotations
@@ -21,7 +22,10 @@ from install_mpm.constitutive.mandel import SQRT2, trace
 from install_mpm.constitutive.parameters import VonMises
 
 STATE_VARIABLES = ("undrained_shear_strength", "plastic_shear_strain")
-"""Strength in Pa carried by the material; accumulated plastic shear strain sqrt(2) |d eps_p|, dimensionless."""
+"""Strength in Pa carried by the material.
+
+Accumulated plastic shear strain sqrt(2) |d eps_p|, dimensionless.
+"""
 
 STRENGTH, PLASTIC_SHEAR = 0, 1
 
@@ -29,7 +33,10 @@ __all__ = ["elastic_strain_from_stress", "initial_state", "pack", "update_stress
 
 
 def pack(parameters: VonMises) -> np.ndarray:
-    """Return the packed parameters: bulk and shear modulus in Pa; the strength is a state variable."""
+    """Return the packed parameters: bulk and shear modulus in Pa.
+
+    The strength is a state variable.
+    """
     return elastic.pack(parameters)
 
 

@@ -1,4 +1,7 @@
-"""From material points to integration points and back: the points carry the state between meshes."""
+"""From material points to integration points and back.
+
+The points carry the state between meshes.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,8 @@ from install_mpm.kernels.gradients import displacement_gradient, shape_gradients
 def nearest_integration_point(reference_coordinates, integration_coordinates):
     """Return the index of the integration point whose sub-region holds the reference coordinates.
 
-    In a simplex the nearest one in barycentric distance belongs to the vertex with the largest coordinate.
+    In a simplex the nearest one in barycentric distance belongs to the vertex with the largest
+    coordinate.
     """
     nearest, nearest_distance = 0, 1e300
     dim = reference_coordinates.shape[0]
@@ -49,10 +53,11 @@ def sum_sub_regions(
 ):  # fmt: skip
     """Add up the material points of every sub-region into ``totals``.
 
-    ``totals`` is a tuple of arrays over (cell, integration point): volume, mass, volume-weighted ln J, elastic strain
-    (3, 3) and state variables, and the material of the largest contribution.  The strain is extrapolated from the
-    point to the integration point with the geostatic gradient ``strain_gradient`` (n_materials, 3, 3) per metre of
-    height, so that geostatic ground is carried without error.
+    ``totals`` is a tuple of arrays over (cell, integration point): volume, mass, volume-weighted ln
+    J, elastic strain (3, 3) and state variables, and the material of the largest contribution.  The
+    strain is extrapolated from the point to the integration point with the geostatic gradient
+    ``strain_gradient`` (n_materials, 3, 3) per metre of height, so that geostatic ground is carried
+    without error.
     """
     volume, mass, log_ratio, strain, state, material = totals
     for c in range(cell_start.shape[0] - 1):
@@ -76,7 +81,9 @@ def sum_sub_regions(
 
 
 @jit
-def vertex_fill(cell_nodes, n_vertices, cell_volume, point_order, cell_start, points, filled, capacity):
+def vertex_fill(
+    cell_nodes, n_vertices, cell_volume, point_order, cell_start, points, filled, capacity
+):
     """Fill volume of soil ``filled`` (n_nodes,) and of cells ``capacity`` (n_nodes,) that belong to each vertex.
 
     The linear functions of the vertices share out both, because quadratic ones are negative in places.
@@ -95,8 +102,13 @@ def vertex_fill(cell_nodes, n_vertices, cell_volume, point_order, cell_start, po
 
 
 @parallel_jit
-def cell_geometry(cell_type, cell_nodes, nodes, integration_coordinates, shares, gradients, volume, height):
-    """Fill shape ``gradients`` (n_cells, n_ip, n_nodes, dim), cell ``volume`` and ``height`` of the integration points."""
+def cell_geometry(
+    cell_type, cell_nodes, nodes, integration_coordinates, shares, gradients, volume, height
+):
+    """Fill shape ``gradients`` (n_cells, n_ip, n_nodes, dim).
+
+    Cell ``volume`` and ``height`` of the integration points.
+    """
     n_cells, n_nodes = cell_nodes.shape
     dim = nodes.shape[1]
     for chunk in prange(CHUNKS):
@@ -119,7 +131,10 @@ def cell_geometry(cell_type, cell_nodes, nodes, integration_coordinates, shares,
 
 @jit
 def body_force(cell_type, cell_nodes, points, gravity, force):
-    """Add the weight of the integration points to the nodal ``force`` (n_nodes, dim) in N, downward."""
+    """Add the weight of the integration points to the nodal ``force`` (n_nodes, dim) in N.
+
+    Downward.
+    """
     n_nodes = cell_nodes.shape[1]
     vertical = force.shape[1] - 1
     values = np.empty(n_nodes)
@@ -138,11 +153,14 @@ def carry_points(
     cell_type, cell_nodes, nodes, displacement, cell_volume_ratio, point_order, cell_start,
     points, materials, strain_gradient, has_mean_dilatation, updated, status,
 ):  # fmt: skip
-    """Fill ``updated`` (MaterialPoints) with the state after the step; ``status`` (n_cells,) is 0 where it is sound.
+    """Fill ``updated`` (MaterialPoints) with the state after the step.
 
-    Every point deforms with its own dF, scaled to the volume change of its cell.  The volumetric part of the trial
-    strains of a cell is then replaced by their mean (plus the geostatic gradient), because a pressure that the
-    integration points do not see would otherwise stay with the points for ever.
+    ``status`` (n_cells,) is 0 where it is sound.
+
+    Every point deforms with its own dF, scaled to the volume change of its cell.  The volumetric
+    part of the trial strains of a cell is then replaced by their mean (plus the geostatic
+    gradient), because a pressure that the integration points do not see would otherwise stay with
+    the points for ever.
     """
     n_cells = cell_nodes.shape[0]
     for chunk in prange(CHUNKS):
@@ -213,7 +231,11 @@ def _carry_cell(
         updated.volume[p] = points.volume[p] * ratio
         updated.volume_ratio[p] = points.volume_ratio[p] * ratio
         trial_log_strain(
-            increment, points.elastic_log_strain[p], scratch.trial, scratch.stretches, scratch.vectors
+            increment,
+            points.elastic_log_strain[p],
+            scratch.trial,
+            scratch.stretches,
+            scratch.vectors,
         )
         from_mandel(scratch.trial, updated.elastic_log_strain[p])
     if has_mean_dilatation:
@@ -238,7 +260,10 @@ def _move_point(p, cell_type, cell_nodes, displacement, xi, points, values, upda
 
 @jit
 def _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated):
-    """Give all points of a cell its mean volumetric trial strain, plus the geostatic gradient over height."""
+    """Give all points of a cell its mean volumetric trial strain.
+
+    Plus the geostatic gradient over height.
+    """
     vertical = updated.position.shape[1] - 1
     volume = mean = height = 0.0
     for entry in range(first, last):
@@ -261,7 +286,10 @@ def _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated
 
 @jit
 def _return_to_yield_surface(p, points, materials, scratch, updated):
-    """Evaluate the law of point ``p`` from the trial strain that ``updated`` holds; return its status."""
+    """Evaluate the law of point ``p`` from the trial strain that ``updated`` holds.
+
+    Return its status.
+    """
     row = points.material[p]
     to_mandel(updated.elastic_log_strain[p], scratch.trial)
     status = update_stress(

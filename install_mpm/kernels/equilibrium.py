@@ -1,15 +1,16 @@
 """Internal force and stiffness of the cells for a trial displacement increment.
 
-With mean dilatation the deformation of each integration point keeps its shape but takes the volume change of its cell,
+With mean dilatation the deformation of each integration point keeps its shape but takes the volume
+change of its cell,
 
     Jbar = sum(v J) / sum(v) ,   dFbar = (Jbar / J)^(1/n) dF   (n = 2 in plane strain, 3 in space),
 
-and the Cauchy stress of dFbar is integrated over the current volume v J (de Souza Neto et al. 1996 with an element
-mean).  The volumetric term adds the energy (h_v/2) v ln(J/Jbar)^2 of *this step only*: it resists the volume modes that
-the mean leaves free and is never stored.
+and the Cauchy stress of dFbar is integrated over the current volume v J (de Souza Neto et al. 1996
+with an element mean).  The volumetric term adds the energy (h_v/2) v ln(J/Jbar)^2 of *this step
+only*: it resists the volume modes that the mean leaves free and is never stored.
 
-Notation: g_a = grad N_a at the start of the step, gx_a in the current position, gbar_a = d ln Jbar / du_a,
-C_ijkl = d tau_ij / d l_kl.
+Notation: g_a = grad N_a at the start of the step, gx_a in the current position, gbar_a = d ln Jbar
+/ du_a, C_ijkl = d tau_ij / d l_kl.
 """
 
 from __future__ import annotations
@@ -31,7 +32,10 @@ from install_mpm.constitutive.mandel import from_mandel
 from install_mpm.kernels.gradients import displacement_gradient
 
 CHUNKS = 64
-"""Cells are shared out in this many chunks, each with its own scratch; results do not depend on it."""
+"""Cells are shared out in this many chunks, each with its own scratch.
+
+Results do not depend on it.
+"""
 
 SMALLEST_VOLUME_RATIO = 0.05
 """A trial that compresses an integration point beyond this in one step is refused."""
@@ -47,7 +51,10 @@ class CellOptions(NamedTuple):
     volumetric_term: np.ndarray
     """h_v of each cell, (n_cells,) in Pa."""
     soft_stiffness: np.ndarray
-    """Incremental stiffness of partly filled cells times volume per integration point, (n_cells,) in N m."""
+    """Incremental stiffness of partly filled cells times volume per integration point.
+
+    (n_cells,) in N m.
+    """
 
 
 class Scratch(NamedTuple):
@@ -141,7 +148,12 @@ def _evaluate_cell(
             for j in range(3):
                 trial.cauchy_stress[q, i, j] = scratch.tensor[i, j] / total_ratio
         _add_point(
-            scratch.current_gradients[q - first], weight / total_ratio, options, scratch, force, stiffness
+            scratch.current_gradients[q - first],
+            weight / total_ratio,
+            options,
+            scratch,
+            force,
+            stiffness,
         )
     if options.has_mean_dilatation and options.volumetric_term[c] > 0.0:
         _add_volumetric_term(
@@ -149,13 +161,23 @@ def _evaluate_cell(
         )
     if options.soft_stiffness[c] > 0.0:
         _add_soft_stiffness(
-            first, last, options.soft_stiffness[c], cell_nodes, points, displacement, force, stiffness
+            first,
+            last,
+            options.soft_stiffness[c],
+            cell_nodes,
+            points,
+            displacement,
+            force,
+            stiffness,
         )
 
 
 @jit
 def _deform(first, last, cell_nodes, points, displacement, options, scratch):
-    """Fill dF, J, current gradients and gbar of a cell; return Jbar, or -1 if a point has collapsed."""
+    """Fill dF, J, current gradients and gbar of a cell.
+
+    Return Jbar, or -1 if a point has collapsed.
+    """
     dim = displacement.shape[1]
     n_nodes = cell_nodes.shape[0]
     scratch.mean_gradient[:, :] = 0.0
@@ -179,7 +201,9 @@ def _deform(first, last, cell_nodes, points, displacement, options, scratch):
         if jacobian < SMALLEST_VOLUME_RATIO:
             return -1.0
         scratch.jacobian[local] = jacobian
-        push_gradients(points.shape_gradients[q], increment, jacobian, scratch.current_gradients[local])
+        push_gradients(
+            points.shape_gradients[q], increment, jacobian, scratch.current_gradients[local]
+        )
         volume += points.volume[q]
         deformed_volume += points.volume[q] * jacobian
         for a in range(n_nodes):
@@ -197,7 +221,10 @@ def _deform(first, last, cell_nodes, points, displacement, options, scratch):
 
 @jit
 def push_gradients(start, increment, jacobian, current):
-    """Fill ``current`` (n_nodes, dim) = dF^-T ``start``: gradients by current instead of start-of-step position."""
+    """Fill ``current`` (n_nodes, dim) = dF^-T ``start``.
+
+    Gradients by current instead of start-of-step position.
+    """
     if start.shape[1] == 2:
         for a in range(start.shape[0]):
             current[a, 0] = (increment[1, 1] * start[a, 0] - increment[1, 0] * start[a, 1]) / (
@@ -212,7 +239,7 @@ def push_gradients(start, increment, jacobian, current):
             total = 0.0
             for i in range(3):
                 n, m = (i + 1) % 3, (i + 2) % 3
-                k, l = (j + 1) % 3, (j + 2) % 3  # noqa: E741 - tensor axes
+                k, l = (j + 1) % 3, (j + 2) % 3
                 cofactor = increment[n, k] * increment[m, l] - increment[n, l] * increment[m, k]
                 total += cofactor * start[a, i] / jacobian
             current[a, j] = total
@@ -220,7 +247,10 @@ def push_gradients(start, increment, jacobian, current):
 
 @jit
 def scale_volume(increment, ratio, dim):
-    """Scale ``increment`` (3, 3) in place so that its determinant grows by ``ratio``, in the modelled dimensions."""
+    """Scale ``increment`` (3, 3) in place so that its determinant grows by ``ratio``.
+
+    In the modelled dimensions.
+    """
     factor = ratio ** (1.0 / dim)
     for i in range(dim):
         for j in range(3):
@@ -229,7 +259,10 @@ def scale_volume(increment, ratio, dim):
 
 @jit
 def _update_point(q, local, mean_ratio, points, materials, options, scratch, trial, dim):
-    """Evaluate the law at point ``q``; leave tau in ``scratch.tensor`` and C in ``scratch.spatial``."""
+    """Evaluate the law at point ``q``.
+
+    Leave tau in ``scratch.tensor`` and C in ``scratch.spatial``.
+    """
     row = points.material[q]
     increment = scratch.gradient[local]
     if options.is_finite_strain:
@@ -284,7 +317,9 @@ def _add_point(gradients, weight, options, scratch, force, stiffness):
                             total -= weight * stress[i, j] * gradients[b, j] * gradients[a, k]
                     stiffness[a, i, b, k] += total
         if options.has_mean_dilatation and options.is_finite_strain:
-            _add_dilatation_coupling(a, contracted, traction, gradients, scratch.mean_gradient, stiffness)
+            _add_dilatation_coupling(
+                a, contracted, traction, gradients, scratch.mean_gradient, stiffness
+            )
 
 
 @jit

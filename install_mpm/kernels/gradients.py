@@ -8,10 +8,12 @@ from install_mpm.cells import reference_gradients
 
 @jit
 def shape_gradients(cell_type, xi, nodes, vertex_nodes, reference, gradients):
-    """Fill ``gradients`` (n_nodes, 2) with d N / d x at ``xi`` of a cell; return the Jacobian determinant.
+    """Fill ``gradients`` (n_nodes, 2) with d N / d x at ``xi`` of a cell.
 
-    ``nodes`` (n, 2) are all coordinates, ``vertex_nodes`` (n_nodes,) the cell's nodes; ``reference`` is scratch of the
-    shape of ``gradients``.
+    Return the Jacobian determinant.
+
+    ``nodes`` (n, 2) are all coordinates, ``vertex_nodes`` (n_nodes,) the cell's nodes;
+    ``reference`` is scratch of the shape of ``gradients``.
     """
     reference_gradients(cell_type, xi, reference)
     a00 = a01 = a10 = a11 = 0.0
@@ -30,7 +32,10 @@ def shape_gradients(cell_type, xi, nodes, vertex_nodes, reference, gradients):
 
 @jit
 def displacement_gradient(displacement, cell_nodes, gradients, gradient):
-    """Fill ``gradient`` (3, 3) with du_i/dx_j from nodal ``displacement`` (n, dim); out-of-plane terms are zero."""
+    """Fill ``gradient`` (3, 3) with du_i/dx_j from nodal ``displacement`` (n, dim).
+
+    Out-of-plane terms are zero.
+    """
     gradient[:, :] = 0.0
     dim = gradients.shape[1]
     for a in range(cell_nodes.shape[0]):

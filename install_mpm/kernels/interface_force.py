@@ -1,4 +1,7 @@
-"""Force and stiffness of the interface elements: f = B^T t A, K = B^T R_end^T D R_mid B A (paper, eqs 8-10)."""
+"""Force and stiffness of the interface elements.
+
+F = B^T t A, K = B^T R_end^T D R_mid B A (paper, eqs 8-10).
+"""
 
 from __future__ import annotations
 
@@ -13,10 +16,12 @@ def evaluate_interface(
     nodes, shape_values, is_active, area, parameters, traction_old, mid_frame, end_frame,
     pile_displacement, displacement, force, stiffness, traction,
 ):  # fmt: skip
-    """Fill ``force`` (n_elements, n_nodes, dim), its ``stiffness`` and the ``traction`` (n_points, dim).
+    """Fill ``force`` (n_elements, n_nodes, dim).
 
-    ``pile_displacement`` (n_points, dim) is the rigid motion of the points in the step; elements with pile-side nodes
-    take the motion from ``displacement`` (n_nodes, dim) as well.
+    Its ``stiffness`` and the ``traction`` (n_points, dim).
+
+    ``pile_displacement`` (n_points, dim) is the rigid motion of the points in the step; elements
+    with pile-side nodes take the motion from ``displacement`` (n_nodes, dim) as well.
     """
     n_points_per_element, n_facet_nodes = shape_values.shape
     n_nodes = nodes.shape[1]
