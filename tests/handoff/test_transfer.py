@@ -99,8 +99,8 @@ def test_volumes_weigh_the_mean():
 )
 def test_pile_hides_points_behind_it(start, end, hidden):
     corner = np.array(PILE)
-    assert is_hidden(np.array(start), np.array(end), corner) is hidden
-    assert is_hidden(np.array(end), np.array(start), corner) is hidden
+    assert bool(is_hidden(np.array(start), np.array(end), corner)) is hidden
+    assert bool(is_hidden(np.array(end), np.array(start), corner)) is hidden
 
 
 def test_hidden_points_never_contribute():
