@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+
+from service_fe.linear_solver import FactorisationError, TangentSolver
+from service_fe.soil_forms import SoilForms
+
+pytestmark = pytest.mark.dolfinx
+
+
+@pytest.fixture
+def soil(box_mesh):
+    return SoilForms(box_mesh)
+
+
+def dense(solver, n):
+    return np.column_stack([solver.multiply(column) for column in np.eye(n)])
+
+
+def unsymmetric_tangent(soil, seed):
+    rng = np.random.default_rng(seed)
+    tangent = 0.1 * rng.normal(size=(len(soil.integration_volumes), 6, 6))
+    return tangent + 2.0 * np.eye(6)
+
+
+def test_solution_with_blocks_and_fixed_unknowns_equals_the_dense_one(soil):
+    """Also after a change of values: the analysis is reused, the factors are not."""
+    rng = np.random.default_rng(5)
+    solver = TangentSolver(soil.matrix, soil.row_of_dof)
+    cells = soil.mesh.cell_nodes[:2]
+    dofs = (2 * cells[:, :, None] + np.arange(2)).reshape(2, 12)
+    fixed = np.array([0, 1, 7, 20])
+    free = np.setdiff1d(np.arange(soil.n_dofs), fixed)
+    for seed in (1, 2):
+        soil.stiffness(unsymmetric_tangent(soil, seed))
+        without = dense(solver, soil.n_dofs)
+        blocks = 0.1 * rng.normal(size=(2, 12, 12))
+        solver.add_blocks(dofs, blocks)
+        matrix = dense(solver, soil.n_dofs)
+        expected = without.copy()
+        for rows, block in zip(dofs, blocks, strict=True):
+            expected[np.ix_(rows, rows)] += block
+        np.testing.assert_allclose(matrix, expected, atol=1e-13)
+
+        right = rng.normal(size=soil.n_dofs)
+        right[fixed] = 0.0
+        solver.factorise(fixed, diagonal=3.0)
+        solution = solver.solve(right)
+        np.testing.assert_allclose(
+            solution[free], np.linalg.solve(matrix[np.ix_(free, free)], right[free]), rtol=1e-8
+        )
+        np.testing.assert_array_equal(solution[fixed], 0.0)
+
+
+def test_singular_matrix_is_reported(soil):
+    solver = TangentSolver(soil.matrix, soil.row_of_dof)
+    soil.stiffness(np.zeros((len(soil.integration_volumes), 6, 6)))
+    solver.factorise(np.array([0]), diagonal=1.0)
+    with pytest.raises(FactorisationError, match="singular"):
+        solver.solve(np.ones(soil.n_dofs))
