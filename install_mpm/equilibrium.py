@@ -9,7 +9,7 @@ import numpy as np
 from install_mpm.assembly import SparsityPattern, constrain, scatter_force, scatter_stiffness
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.cells import ReferenceCell
-from install_mpm.constitutive.dispatch import Materials
+from install_mpm.constitutive.dispatch import Materials, Model
 from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.conventions import GRAVITY
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
@@ -102,22 +102,37 @@ def find_equilibrium(
     """
     system = _StepSystem(mesh, points, fill, interface, motion, prescribed, model)
     first = np.where(prescribed.is_prescribed, prescribed.displacement, start)
-    first = np.where(system.is_free | prescribed.is_prescribed, first, 0.0)
+    first = np.where(system.is_free | prescribed.is_prescribed, first, 0.0).ravel()
+    if prescribed.displacement.any() and not start.any():
+        first = _elastic_solution(system, first, model.solve)
     newton = solve_newton(
         system.evaluate,
         model.solve,
-        first.ravel(),
+        first,
         model.numerics.tolerance,
         model.numerics.max_iterations,
     )
     reaction = np.where(prescribed.is_prescribed, system.out_of_balance, 0.0)
     return StepEquilibrium(
         newton,
-        newton.solution.reshape(first.shape),
+        newton.solution.reshape(start.shape),
         system.trial,
         system.traction,
         reaction,
     )
+
+
+def _elastic_solution(system: _StepSystem, first: np.ndarray, solve: Solve) -> np.ndarray:
+    """Return the trial displacement (n_dofs,) of elastic soil: one linear solve from ``first``.
+
+    Driven nodes beside nodes at rest would put all of the motion into one row of cells, far beyond yield; the elastic
+    solution spreads it.
+    """
+    soils = system.materials
+    system.materials = soils._replace(model=np.full_like(soils.model, Model.HENCKY_ELASTIC))
+    state = system.evaluate(first)
+    system.materials = soils
+    return first + solve(state.tangent, -state.residual)
 
 
 class _StepSystem:
@@ -137,6 +152,7 @@ class _StepSystem:
         n_cells, n_cell_nodes = mesh.cell_nodes.shape
         n_elements, n_element_nodes = model.elements.nodes.shape
         self.mesh, self.points, self.fill, self.model = mesh, points, fill, model
+        self.materials = model.materials
         self.interface, self.is_prescribed = interface, prescribed.is_prescribed
         self.options = cell_options(fill, points, model)
         self.pile_displacement = rigid_displacement(motion, interface.position)
@@ -185,7 +201,7 @@ class _StepSystem:
     def _evaluate_blocks(self, nodal: np.ndarray) -> None:
         """Fill force and stiffness of all cells and interface elements."""
         evaluate_cells(
-            self.mesh.cell_nodes, self.fill.is_active, self.points, nodal, self.model.materials,
+            self.mesh.cell_nodes, self.fill.is_active, self.points, nodal, self.materials,
             self.options, self.cell_force, self.cell_stiffness, self.trial,
         )  # fmt: skip
         evaluate_interface(

@@ -73,6 +73,17 @@ def facet_rule(n_facet_nodes: int, n_points: int) -> tuple[np.ndarray, np.ndarra
     return values, weights / 2.0
 
 
+def no_interface(dim: int) -> tuple[InterfaceElements, InterfacePoints]:
+    """Return an interface without elements, for problems that have none."""
+    no_nodes, no_index = np.zeros((0, 3), dtype=np.int64), np.zeros(0, dtype=np.int64)
+    elements = InterfaceElements(no_nodes, no_index, *facet_rule(3, 3))
+    vectors = np.zeros((0, dim))
+    points = InterfacePoints(
+        vectors, vectors, np.zeros(0), vectors, np.zeros((0, 5)), no_index, no_index
+    )
+    return elements, points
+
+
 def frames(normals: np.ndarray, rotation: float) -> np.ndarray:
     """Return the local axes (n, 2, 2) of interface points.
 

@@ -8,6 +8,8 @@ from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.carriers import GeostaticGradient
 from install_mpm.cells import ReferenceCell, sub_region_points
 from install_mpm.constitutive import dispatch
+from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
+from install_mpm.constitutive.parameters import SoilParameters
 from install_mpm.conventions import GRAVITY
 from install_mpm.ground import Ground, geostatic_stress
 from install_mpm.material_points import MaterialPoints
@@ -39,7 +41,7 @@ def seed_points(
         mass=volume * ground.unit_weight / GRAVITY,
         volume=volume,
         volume_ratio=np.ones(n_points),
-        elastic_log_strain=elastic_strain(ground, stress),
+        elastic_log_strain=elastic_strain_of(ground.soil, stress),
         kirchhoff_stress=stress,
         state_variables=dispatch.initial_state(ground.soil, -position[:, -1]),
         material=np.zeros(n_points, dtype=np.int64),
@@ -48,16 +50,12 @@ def seed_points(
     )
 
 
-def elastic_strain(ground: Ground, stress: np.ndarray) -> np.ndarray:
-    """Return the elastic strain (n, 3, 3) that belongs to ``stress`` (n, 3, 3) in Pa in the soil of ``ground``."""
-    from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
-
+def elastic_strain_of(soil: SoilParameters, stress: np.ndarray) -> np.ndarray:
+    """Return the elastic strain (n, 3, 3) of ``soil`` that belongs to ``stress`` (n, 3, 3) in Pa."""
     material = np.zeros(len(stress), dtype=np.int64)
     strain = np.empty((len(stress), 6))
     six_vectors = np.ascontiguousarray(stress[:, ROW, COLUMN] * SCALE)
-    dispatch.elastic_strain_from_stress_all(
-        dispatch.pack([ground.soil]), material, six_vectors, strain
-    )
+    dispatch.elastic_strain_from_stress_all(dispatch.pack([soil]), material, six_vectors, strain)
     tensor = np.empty_like(stress)
     tensor[:, ROW, COLUMN] = tensor[:, COLUMN, ROW] = strain / SCALE
     return tensor
@@ -66,4 +64,4 @@ def elastic_strain(ground: Ground, stress: np.ndarray) -> np.ndarray:
 def geostatic_gradient(ground: Ground, vertical: int) -> GeostaticGradient:
     """Return the change of geostatic stress and strain per metre of height (both are linear in the ground)."""
     per_metre = -geostatic_stress(ground, np.array([-1.0]), vertical)
-    return GeostaticGradient(strain=elastic_strain(ground, per_metre), stress=per_metre)
+    return GeostaticGradient(strain=elastic_strain_of(ground.soil, per_metre), stress=per_metre)

@@ -1,0 +1,105 @@
+"""Rough rigid strip footing on weightless clay, material point method: N_c = 2 + pi.
+
+The same problem, mesh and result as ``strip_footing_fe``, through the step of the installation
+stage: quadratic cells with element-mean dilatation, material points as carriers, finite strain.
+The ground is stiff, so that the plateau is reached while the settlement is far below a cell, where
+the theory of small deformation holds; the background mesh therefore stays where it is.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from handoff.fe_mesh import FEMesh
+from install_mpm.assembly import sparsity_pattern
+from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
+from install_mpm.cells import CellType, reference_cell
+from install_mpm.constitutive import dispatch
+from install_mpm.constitutive.parameters import VonMises
+from install_mpm.equilibrium import Discretisation, Prescribed
+from install_mpm.ground import Ground
+from install_mpm.interface import no_interface
+from install_mpm.linear_solvers import mumps
+from install_mpm.options import Numerics
+from install_mpm.pile import PileMotion
+from install_mpm.seeding import geostatic_gradient, seed_points
+from install_mpm.step import step
+from service_fe.problem import roller_supports
+from workflows.verification.strip_footing_fe import StripFootingResult, footing_mesh
+
+AT_REST = PileMotion(np.zeros(2))
+
+
+def strip_footing(
+    size_at_corner: float,
+    *,
+    size_far: float = 0.35,
+    width: float = 1.0,
+    undrained_shear_strength: float = 10e3,
+    rigidity_index: float = 2e4,
+    poissons_ratio: float = 0.49,
+    settlement: float = 2e-3,
+    steps: int = 32,
+    numerics: Numerics | None = None,
+) -> StripFootingResult:
+    """Return the curve of a rough rigid footing, pushed by ``settlement * width`` in equal steps.
+
+    Parameters are those of ``strip_footing_fe.strip_footing``, and ``numerics`` of the installation
+    stage.
+
+    Raises
+    ------
+    RuntimeError
+        If a step does not converge.
+    """
+    numerics = numerics or Numerics(tolerance=1e-8)
+    fe_mesh = footing_mesh(width, size_at_corner * width, size_far * width)
+    mesh = make_background_mesh(fe_mesh.nodes, fe_mesh.cell_nodes)
+    soil = VonMises(
+        rigidity_index * undrained_shear_strength, poissons_ratio, undrained_shear_strength
+    )
+    ground = Ground(0.0, 1.0, soil)
+    elements, interface = no_interface(mesh.nodes.shape[1])
+    pattern = sparsity_pattern([mesh.cell_nodes, elements.nodes], len(mesh.nodes), 2)
+    model = Discretisation(
+        reference_cell(CellType.TRI6),
+        elements,
+        dispatch.pack([soil]),
+        pattern,
+        mumps(pattern),
+        numerics,
+    )
+    points = seed_points(mesh, model.cell, ground, per_direction=2)
+    prescribed, under_footing = _rough_footing(fe_mesh, mesh, width, settlement * width / steps)
+    gradient = geostatic_gradient(ground, vertical=1)
+    start = np.zeros_like(mesh.nodes)
+    loads, histories = [], []
+    for number in range(steps):
+        result = step(
+            points, mesh, interface, AT_REST, prescribed, start, lambda same: same, model, gradient
+        )
+        if not result.is_converged:
+            raise RuntimeError(f"strip footing: step {number + 1} of {steps} does not converge")
+        points, start = result.points, result.equilibrium.displacement
+        loads.append(-2.0 * result.equilibrium.reaction[under_footing, 1].sum())
+        histories.append(tuple(result.equilibrium.newton.residuals))
+    return StripFootingResult(
+        settlement=settlement * np.arange(1, steps + 1) / steps,
+        bearing_factor=np.array(loads) / (undrained_shear_strength * width),
+        iterations=np.array([len(history) - 1 for history in histories]),
+        residuals=tuple(histories),
+        n_dofs=mesh.nodes.size,
+    )
+
+
+def _rough_footing(
+    fe_mesh: FEMesh, mesh: BackgroundMesh, width: float, advance: float
+) -> tuple[Prescribed, np.ndarray]:
+    """Return supports and the motion of the footing in a step, and which nodes lie under it."""
+    x, z = mesh.nodes.T
+    under_footing = (np.abs(z) < 1e-9) & (x < 0.5 * width + 1e-9)
+    is_prescribed = roller_supports(fe_mesh)
+    is_prescribed[under_footing] = True
+    displacement = np.zeros_like(mesh.nodes)
+    displacement[under_footing, 1] = -advance
+    return Prescribed(is_prescribed, displacement), under_footing
