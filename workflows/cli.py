@@ -23,6 +23,17 @@ USER_ERROR = 2
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
 
+USER_ERRORS = {
+    "workflows.errors.CaseError",
+    "workflows.errors.DirectoryError",
+    "install_mpm.record.StateFileError",
+    "install_mpm.installation.NotConvergedError",
+    "handoff.gmsh_triangles.MeshError",
+    "handoff.equilibration.EquilibrationError",
+    "service_fe.solve.ServiceError",
+}
+"""Errors of the stages that are one sentence for the user; by name, to import no stage for them."""
+
 app = typer.Typer(
     help="Install a pile with the material point method, hand the ground over, load it in service.",
     no_args_is_help=True,
@@ -143,21 +154,8 @@ def _load(path: Path, output: Path | None, overrides: list[str] | None) -> tuple
 
 def is_user_error(error: Exception) -> bool:
     """Return whether ``error`` is one that a stage documents, with a message for the user."""
-    from handoff.equilibration import EquilibrationError
-    from handoff.gmsh_triangles import MeshError
-    from install_mpm.installation import NotConvergedError
-    from install_mpm.record import StateFileError
-    from workflows.errors import CaseError, DirectoryError
-
-    documented = (
-        CaseError,
-        DirectoryError,
-        StateFileError,
-        NotConvergedError,
-        MeshError,
-        EquilibrationError,
-    )
-    return isinstance(error, documented)
+    kinds = {f"{kind.__module__}.{kind.__qualname__}" for kind in type(error).__mro__}
+    return bool(kinds & USER_ERRORS)
 
 
 def main() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from service_fe.options import Release
 from workflows.errors import CaseError
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ def check(case: Case) -> None:
     _check_headroom(case)
     _check_step(case)
     _check_programmes(case)
+    _check_solver(case)
 
 
 def _check_geometry(case: Case) -> None:
@@ -92,14 +94,38 @@ def _check_step(case: Case) -> None:
 
 
 def _check_programmes(case: Case) -> None:
-    if not case.service.programmes:
+    programmes = case.service.programmes
+    if not programmes:
         raise CaseError(
             "service.programmes is empty; add at least one [[service.programmes]] table"
         )
-    names = Counter(programme.name for programme in case.service.programmes)
+    names = Counter(programme.name for programme in programmes)
     for name, count in names.items():
         if count > 1:
             raise CaseError(
                 f"service.programmes: {count} programmes are named {name!r}; "
                 "give each a name of its own"
             )
+    is_released = False
+    for programme in programmes:
+        if isinstance(programme, Release):
+            is_released = True
+        elif programme.displacement == 0.0:
+            raise CaseError(
+                f"service.programmes: {programme.name!r} has no displacement; give it one"
+            )
+        elif programme.start == "released" and not is_released:
+            raise CaseError(
+                f"service.programmes: {programme.name!r} starts from the released pile; put a "
+                'programme of kind "release" before it, or set start = "equilibrated"'
+            )
+
+
+def _check_solver(case: Case) -> None:
+    from install_mpm.linear_solvers import SOLVERS
+
+    if case.numerics.linear_solver not in SOLVERS:
+        raise CaseError(
+            f"numerics.linear_solver is {case.numerics.linear_solver!r}; "
+            f"use one of {', '.join(SOLVERS)}"
+        )

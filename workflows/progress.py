@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
 from rich.console import Console
 from rich.progress import (
@@ -23,6 +24,23 @@ Advance = Callable[[int, int, str], None]
 
 def no_progress(_done: int, _total: int, _note: str) -> None:
     """Show nothing."""
+
+
+def service_observer(n_programmes: int, advance: Advance) -> Callable[[Any], None]:
+    """Return an observer of the service stage that shows all programmes as one count.
+
+    Each programme counts as 100, because its number of steps is not known before it starts.
+    """
+    finished = 0
+
+    def observe(progress: Any) -> None:
+        nonlocal finished
+        share = 100 * progress.step // progress.n_steps
+        note = f"%, {progress.programme}, {progress.head_load / 1e3:.0f} kN/m"
+        advance((100 * finished + share) // n_programmes, 100, note)
+        finished += progress.step == progress.n_steps
+
+    return observe
 
 
 class Reporter:

@@ -29,6 +29,8 @@ class Stage:
 
     name: str
     """Name of its module in ``workflows.stages``."""
+    command: str
+    """Command that runs it alone."""
     doing: str
     keys: tuple[str, ...]
     """Keys of the case that it depends on."""
@@ -42,30 +44,47 @@ NUMERICS = ("install_mpm", "handoff", "service_fe")
 
 STAGES = (
     Stage(
-        "install", "jack the pile into the ground", names.INSTALL_KEYS,
+        "install", "screwpile install CASE", "jack the pile into the ground", names.INSTALL_KEYS,
         reads=(), writes=(names.INSTALLED,),
         sources=("install_mpm", "workflows/stages/install.py"),
     ),
     Stage(
-        "hand_off", "hand the ground over to finite elements", names.HANDOFF_KEYS,
+        "hand_off", "screwpile handoff DIR", "hand the ground over to finite elements", names.HANDOFF_KEYS,
         reads=(names.INSTALLED,), writes=(names.HANDED_OFF, names.CERTIFICATE),
         sources=(*NUMERICS, "workflows/stages/hand_off.py"),
     ),
     Stage(
-        "serve", "load the installed pile in service", names.SERVICE_KEYS,
+        "serve", "screwpile serve DIR", "load the installed pile in service", names.SERVICE_KEYS,
         reads=(names.HANDED_OFF,), writes=(names.SERVICE,),
         sources=(*NUMERICS, "workflows/stages/serve.py"),
     ),
     Stage(
-        "wished", "load the same pile wished in place", names.WISHED_KEYS,
+        "wished", "screwpile wished CASE", "load the same pile wished in place", names.WISHED_KEYS,
         reads=(), writes=(names.WISHED_SERVICE,),
         sources=(*NUMERICS, "workflows/stages/wished.py"),
     ),
     Stage(
-        "compare", "compare the two", ("title", *names.SERVICE_KEYS),
+        "compare", "screwpile compare DIR", "compare the two", ("title", *names.SERVICE_KEYS),
         reads=(names.INSTALLED, names.CERTIFICATE, names.SERVICE, names.WISHED_SERVICE),
-        writes=(names.CURVES, names.SUMMARY),
+        writes=(names.CURVES, names.WISHED_CURVES, names.SUMMARY),
         sources=(*NUMERICS, "workflows/stages/compare.py", "workflows/compare.py"),
+    ),
+    Stage(
+        "export", "screwpile export DIR", "write views for ParaView", names.SERVICE_KEYS,
+        reads=(names.INSTALLED, names.SERVICE, names.WISHED_SERVICE),
+        writes=(
+            names.VIEW_POINTS, names.VIEW_BACKGROUND, names.VIEW_INSTALLED, names.VIEW_WISHED
+        ),
+        sources=("workflows/stages/export.py", "workflows/export.py"),
+    ),
+    Stage(
+        "report", "screwpile report DIR", "write the report", ("title", *names.SERVICE_KEYS),
+        reads=(
+            names.INSTALLED, names.HANDED_OFF, names.CERTIFICATE, names.SERVICE,
+            names.WISHED_SERVICE, names.CURVES, names.SUMMARY,
+        ),
+        writes=(names.REPORT,),
+        sources=("workflows",),
     ),
 )  # fmt: skip
 
@@ -95,8 +114,29 @@ def is_up_to_date(stage: Stage, case: Case, directory: Path) -> bool:
     return record.outputs == outputs and record.inputs == inputs_of(stage, case, directory)
 
 
+def check_inputs(stage: Stage, directory: Path) -> None:
+    """Check that the files that ``stage`` reads are there.
+
+    Raises
+    ------
+    DirectoryError
+        Naming the first that is missing, and the command that writes it.
+    """
+    for file in stage.reads:
+        if not (directory / file).exists():
+            writer = next(other for other in STAGES if file in other.writes)
+            raise DirectoryError(f"{directory / file}: no such file; run `{writer.command}` first")
+
+
 def run_stage(stage: Stage, case: Case, directory: Path, reporter: Reporter) -> None:
-    """Run one stage and record it in the manifest."""
+    """Run one stage and record it in the manifest.
+
+    Raises
+    ------
+    DirectoryError
+        If a file that it reads is missing.
+    """
+    check_inputs(stage, directory)
     inputs = inputs_of(stage, case, directory)
     start = time.perf_counter()
     with reporter.stage(stage.name, stage.doing) as advance:
@@ -168,5 +208,6 @@ def run_from_files(name: str, directory: Path, reporter: Reporter | None = None)
     if not directory.is_dir():
         raise DirectoryError(f"{directory}: no such directory; run `screwpile install` first")
     stage = stage_named(name)
+    check_inputs(stage, directory)
     first = next(file for file in stage.reads if file in STATE_FILES)
     run_stage(stage, case_for(directory, first), directory, reporter or Reporter())

@@ -1,0 +1,183 @@
+"""Installed against wished in place: curves as rows, headline figures, convergence statistics."""
+
+from __future__ import annotations
+
+import csv
+import io
+from typing import Any
+
+import numpy as np
+
+from install_mpm.history import History
+from install_mpm.pile import PilePart
+from install_mpm.state_file import InstalledState
+from service_fe.options import Displace
+from service_fe.results import Curve, ProgrammeResult, ServiceResult, characteristics, head_load_at
+from workflows.case import Case
+
+COLUMNS = ("programme", "model", "displacement_m", "head_load_N", "iterations", "residual")
+
+QUADRATIC_ORDER = 1.8
+"""Order of convergence from which the end of a residual history counts as quadratic."""
+
+CONTINUITY_SHARES = (0.02, 0.05)
+"""Displacements, over the pile width, at which pushing on is compared with the installation."""
+
+
+def curves_csv(results: list[ServiceResult]) -> str:
+    """Return all curves as CSV text: whole pile, displacement and load positive downward."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for result in results:
+        for entry in result.programmes:
+            curve = entry.curve
+            for k in range(len(curve.displacement)):
+                writer.writerow(
+                    [
+                        entry.programme.name,
+                        result.model,
+                        repr(float(curve.displacement[k])),
+                        repr(float(curve.head_load[k])),
+                        int(curve.iterations[k]),
+                        f"{curve.residual[k]:.3e}",
+                    ]
+                )
+    return text.getvalue()
+
+
+def headline(
+    case: Case, installed: InstalledState, service: ServiceResult, wished: ServiceResult
+) -> dict[str, Any]:
+    """Return the headline results of a run as plain data; names carry the SI unit."""
+    return {
+        "installation": installation_figures(installed),
+        "service": {
+            result.programme.name: programme_figures(
+                result, wished.programme(result.programme.name), 2.0 * case.pile.half_width
+            )
+            for result in service.programmes
+        },
+        "continuity": continuity_figures(case, installed, service),
+    }
+
+
+def installation_figures(installed: InstalledState) -> dict[str, Any]:
+    """Return depth and forces at the end of the installation (whole pile, per metre run)."""
+    history = installed.history
+    return {
+        "penetration_m": float(installed.pile.penetration),
+        "tip_depth_m": float(installed.pile.tip_depth),
+        "crowd_force_N": float(history.crowd_force[-1]),
+        f"{PilePart.BASE.name.lower()}_force_N": float(history.base_force[-1]),
+        f"{PilePart.SHAFT.name.lower()}_force_N": float(history.shaft_force[-1]),
+        "steps": len(history.penetration),
+        "material_points": len(installed.material_points.mass),
+    }
+
+
+def programme_figures(
+    installed: ProgrammeResult, wished: ProgrammeResult, pile_width: float
+) -> dict[str, Any]:
+    """Return the figures of a programme for both models, and their ratio.
+
+    A ratio is taken where both models start without head load, i.e. from the released pile.
+    """
+    if not isinstance(installed.programme, Displace):
+        return {
+            "installed": _release_figures(installed.curve),
+            "wished_in_place": _release_figures(wished.curve),
+        }
+    figures = {
+        "installed": _curve_figures(installed.curve, pile_width),
+        "wished_in_place": _curve_figures(wished.curve, pile_width),
+    }
+    if installed.programme.start != "released":
+        return figures
+    ratios = {
+        name: _ratio(value, figures["wished_in_place"][name])
+        for name, value in figures["installed"].items()
+    }
+    names = {name: name.rsplit("_", 1)[0] for name in ratios}
+    return {**figures, "ratio": {names[name]: value for name, value in ratios.items()}}
+
+
+def _curve_figures(curve: Curve, pile_width: float) -> dict[str, float | None]:
+    found = characteristics(curve, pile_width)
+    return {
+        "initial_stiffness_N/m": found.initial_stiffness,
+        "capacity_N": found.capacity,
+        "tangent_capacity_N": found.tangent_capacity,
+    }
+
+
+def _release_figures(curve: Curve) -> dict[str, float]:
+    return {
+        "head_load_before_N": float(curve.head_load[0]),
+        "displacement_m": float(curve.displacement[-1]),
+    }
+
+
+def _ratio(installed: float | None, wished: float | None) -> float | None:
+    return None if installed is None or not wished else installed / wished
+
+
+def continuity_figures(
+    case: Case, installed: InstalledState, service: ServiceResult
+) -> dict[str, Any]:
+    """Return the resistance to being pushed on over the crowd force at the end of jacking.
+
+    Taken from every downward programme that starts from the equilibrated state, as far as it goes;
+    empty if the pile was not jacked.
+    """
+    force = float(installed.history.crowd_force[-1])
+    if float(installed.pile.penetration) == 0.0 or force == 0.0:
+        return {}
+    width = 2.0 * case.pile.half_width
+    figures: dict[str, Any] = {}
+    for result in service.programmes:
+        programme = result.programme
+        if not isinstance(programme, Displace) or programme.start != "equilibrated":
+            continue
+        reached = programme.displacement * (1.0 + 1e-9)
+        figures[programme.name] = {
+            f"head_load_over_crowd_force_at_{share:g}_B": head_load_at(result.curve, share * width)
+            / force
+            for share in CONTINUITY_SHARES
+            if share * width <= reached
+        }
+    return figures
+
+
+def convergence(installed: InstalledState, results: list[ServiceResult]) -> dict[str, Any]:
+    """Return how Newton's method converged in the installation and in each service model."""
+    return {
+        "installation": convergence_figures(installed.history),
+        **{
+            result.model: {
+                entry.programme.name: convergence_figures(entry.curve)
+                for entry in result.programmes
+            }
+            for result in results
+        },
+    }
+
+
+def convergence_figures(rows: History | Curve) -> dict[str, Any]:
+    """Return the statistics of the steps that iterated.
+
+    A step whose history is too short to show an order (it was nearly linear) has none, and is not
+    counted in the share of quadratic steps.
+    """
+    steps = rows.iterations > 0
+    order = rows.convergence_order[steps]
+    known = order[np.isfinite(order)]
+    return {
+        "steps": int(steps.sum()),
+        "steps_with_known_order": len(known),
+        "share_quadratic": float((known >= QUADRATIC_ORDER).mean()) if len(known) else None,
+        "median_order": float(np.median(known)) if len(known) else None,
+        "largest_residual": float(rows.residual[steps].max()) if steps.any() else 0.0,
+        "mean_iterations": float(rows.iterations[steps].mean()) if steps.any() else 0.0,
+        "cuts": int(rows.cuts.sum()),
+    }

@@ -1,0 +1,55 @@
+"""Stage 3: load the installed pile in service.
+
+    python -m workflows.stages.serve DIR
+
+Reads ``handed_off.h5``; writes ``service.h5``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from handoff.fe_state_file import HandedOffState
+from install_mpm.pile import buried_weight
+from service_fe.problem import ServiceProblem
+from service_fe.result_file import write_service_result
+from service_fe.solve import run as run_programmes
+from workflows.case import Case, case_text
+from workflows.directory import HANDED_OFF, SERVICE
+from workflows.manifest import created_by
+from workflows.progress import Advance, no_progress, service_observer
+from workflows.state_files import read_checked
+
+
+def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str]:
+    """Run the programmes of ``case`` on the handed-off state in ``directory``.
+
+    Raises
+    ------
+    StateFileError, DirectoryError
+        If ``handed_off.h5`` is missing or damaged, or belongs to another case.
+    ServiceError
+        If a step does not converge; nothing is written.
+    """
+    handed_off: HandedOffState = read_checked(directory, HANDED_OFF, case)
+    weight = buried_weight(case.pile, float(handed_off.pile.tip_depth))
+    problem = ServiceProblem(
+        handed_off.mesh, case.ground, case.interface, weight, case.service.numerics
+    )
+    result = run_programmes(
+        problem,
+        handed_off.state,
+        case.service.programmes,
+        service_observer(len(case.service.programmes), advance),
+        model="installed",
+        case_text=case_text(case),
+    )
+    write_service_result(directory / SERVICE, result, created_by())
+    return []
+
+
+if __name__ == "__main__":
+    from workflows.cli import run_script
+    from workflows.cli import serve as command
+
+    run_script(command)

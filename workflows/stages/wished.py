@@ -1,0 +1,56 @@
+"""The same pile at the same depth, wished in place: finite elements in undisturbed ground.
+
+    python -m workflows.stages.wished CASE -o DIR
+
+Reads the case; writes ``wished_in_place/service.h5``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from handoff.fe_mesh import make_mesh
+from handoff.surface import level_surface
+from install_mpm.pile import buried_weight
+from service_fe.problem import ServiceProblem
+from service_fe.result_file import write_service_result
+from service_fe.solve import run as run_programmes
+from workflows.case import Case, case_text
+from workflows.directory import WISHED, WISHED_SERVICE
+from workflows.manifest import created_by
+from workflows.progress import Advance, no_progress, service_observer
+
+
+def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str]:
+    """Run the programmes of ``case`` on the pile wished in place at its final depth.
+
+    Raises
+    ------
+    MeshError
+        If the ground cannot be meshed.
+    ServiceError
+        If a step does not converge; nothing is written.
+    """
+    depth = case.final_tip_depth
+    mesh = make_mesh(case.pile, depth, case.box, case.handoff, level_surface())
+    problem = ServiceProblem(
+        mesh, case.ground, case.interface, buried_weight(case.pile, depth), case.service.numerics
+    )
+    result = run_programmes(
+        problem,
+        problem.wished_in_place_state(),
+        case.service.programmes,
+        service_observer(len(case.service.programmes), advance),
+        model="wished_in_place",
+        case_text=case_text(case),
+    )
+    (directory / WISHED).mkdir(exist_ok=True)
+    write_service_result(directory / WISHED_SERVICE, result, created_by())
+    return []
+
+
+if __name__ == "__main__":
+    from workflows.cli import run_script
+    from workflows.cli import wished as command
+
+    run_script(command)
