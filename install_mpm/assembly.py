@@ -8,8 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-from install_mpm._jit import jit
-
 
 class SparsityPattern(NamedTuple):
     """Compressed rows of the global matrix, and where every entry of every element block goes.
@@ -53,36 +51,6 @@ def sparsity_pattern(
     return SparsityPattern(
         indptr, (entries % n_dofs).astype(np.int32), tuple(families), tuple(slots)
     )
-
-
-@jit
-def scatter_stiffness(blocks, slots, values):
-    """Add element ``blocks`` (n_elements, n, n) to the matrix ``values`` through ``slots``.
-
-    In element order.
-    """
-    for e in range(slots.shape[0]):
-        for i in range(slots.shape[1]):
-            for j in range(slots.shape[2]):
-                values[slots[e, i, j]] += blocks[e, i, j]
-
-
-@jit
-def scatter_force(blocks, dofs, vector):
-    """Add element ``blocks`` (n_elements, n) to the global ``vector``, in element order."""
-    for e in range(dofs.shape[0]):
-        for i in range(dofs.shape[1]):
-            vector[dofs[e, i]] += blocks[e, i]
-
-
-@jit
-def constrain(indptr, indices, is_free, values):
-    """Turn rows and columns of dofs that are not free into those of the identity, in place."""
-    for i in range(indptr.shape[0] - 1):
-        for entry in range(indptr[i], indptr[i + 1]):
-            j = indices[entry]
-            if not (is_free[i] and is_free[j]):
-                values[entry] = 1.0 if i == j else 0.0
 
 
 def as_matrix(pattern: SparsityPattern, values: np.ndarray) -> sparse.csr_matrix:

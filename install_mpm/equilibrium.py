@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from install_mpm.assembly import SparsityPattern, constrain, scatter_force, scatter_stiffness
+from install_mpm.assembly import SparsityPattern
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.cells import ReferenceCell
 from install_mpm.constitutive.dispatch import Materials, Model
@@ -17,6 +17,7 @@ from install_mpm.interface import InterfaceElements, InterfacePoints, frames
 from install_mpm.kernels.carry import body_force
 from install_mpm.kernels.equilibrium import CellOptions, evaluate_cells
 from install_mpm.kernels.interface_force import evaluate_interface
+from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
 from install_mpm.linear_solvers import Solve
 from install_mpm.newton import Evaluation, NewtonResult, solve_newton
 from install_mpm.options import Numerics

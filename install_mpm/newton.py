@@ -109,16 +109,17 @@ def _backtrack(
     return best
 
 
-def convergence_order(residuals: np.ndarray) -> float:
+def convergence_order(residuals: np.ndarray, round_off: float = ROUND_OFF) -> float:
     """Return the order p of the end of a residual history, r_k+1 ~ r_k^p.
 
     NaN if there are fewer than three residuals.
 
-    Three successive residuals give p = ln(r_3 / r_2) / ln(r_2 / r_1).  The last three above
+    Three successive residuals give p = ln(r_3 / r_2) / ln(r_2 / r_1).  Residuals below ``round_off``
+    say nothing; stiff ground under a small load has it higher than the default.  The last three above
     round-off are used; if one more lies below, it can only be too large for its order, so its
     triple counts where it gives more.
     """
-    n_above = int(np.count_nonzero(residuals > ROUND_OFF))
+    n_above = int(np.count_nonzero(residuals > round_off))
     orders = [
         _order_of_three(residuals[last - 3 : last])
         for last in (n_above, n_above + 1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -153,7 +153,7 @@ def read_installed_state(path: Path) -> InstalledState:
         name = file.attrs.get("kinematics")
         if name not in Kinematics.__members__:
             raise StateFileError(f"{path}: attribute kinematics is {name!r}; write the file again")
-        records = {}
+        records: dict[str, Any] = {}
         for group, record_type in RECORDS.items():
             if group not in file:
                 raise StateFileError(f"{path}: group /{group} is missing; write the file again")
