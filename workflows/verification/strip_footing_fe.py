@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import gmsh
 import numpy as np
 
 from handoff.fe_mesh import FacetTag, FEMesh
+from handoff.gmsh_triangles import triangulate
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.ground import Ground
 from service_fe.load_step import Step
@@ -22,8 +22,6 @@ from service_fe.problem import ServiceProblem, roller_supports
 from service_fe.rigid_pile import held
 
 EXACT = 2.0 + np.pi
-LINE, TRIANGLE = 8, 9
-"""gmsh's numbers of the 3-node line and the 6-node triangle."""
 
 
 @dataclass(frozen=True)
@@ -66,10 +64,10 @@ def strip_footing(
     undrained_shear_strength: float = 10e3,
     rigidity_index: float = 1000.0,
     poissons_ratio: float = 0.49,
-    settlement: float = 0.04,
+    relative_settlement: float = 40.0,
     steps: int = 32,
 ) -> StripFootingResult:
-    """Return the curve of a rough rigid footing, pushed by ``settlement * width`` in equal steps.
+    """Return the curve of a rough rigid footing that is pushed down in equal steps.
 
     Parameters
     ----------
@@ -80,12 +78,13 @@ def strip_footing(
     undrained_shear_strength
         Shear strength in Pa.
     rigidity_index
-        Young's modulus over shear strength; it only scales the settlement.
+        Young's modulus E over shear strength s_u; it only scales the settlement.
     poissons_ratio
         Below 0.5.
-    settlement, steps
-        Final settlement over width, and number of steps.
+    relative_settlement, steps
+        Final settlement times E / (s_u width), and number of steps; the plateau begins near 10.
     """
+    settlement = relative_settlement / rigidity_index
     mesh = footing_mesh(width, size_at_corner * width, size_far * width)
     soil = VonMises(
         rigidity_index * undrained_shear_strength, poissons_ratio, undrained_shear_strength
@@ -118,62 +117,32 @@ def strip_footing(
 
 
 def footing_mesh(width: float, size_at_corner: float, size_far: float) -> FEMesh:
-    """Return the mesh of the right half: 2.5 widths wide, 2 deep, graded to the corner."""
+    """Return the mesh of the right half: 2.5 widths wide, 2 deep, graded to the footing's edge."""
     edge, side, depth = 0.5 * width, 2.5 * width, 2.0 * width
-    gmsh.initialize(interruptible=False)
-    try:
-        gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("General.NumThreads", 1)
-        geo = gmsh.model.geo
-        corners = [(0, -depth), (side, -depth), (side, 0), (edge, 0), (0, 0)]
-        points = [geo.addPoint(x, z, 0.0) for x, z in corners]
-        lines = [geo.addLine(*ends) for ends in zip(points, points[1:] + points[:1], strict=True)]
-        geo.addPlaneSurface([geo.addCurveLoop(lines)])
-        geo.synchronize()
-        _grade(points[3], size_at_corner, size_far, width)
-        gmsh.model.mesh.generate(2)
-        gmsh.model.mesh.setOrder(2)
-        tags = [
-            FacetTag.BOTTOM, FacetTag.SIDE, FacetTag.SURFACE, FacetTag.SURFACE, FacetTag.SYMMETRY
-        ]  # fmt: skip
-        return _mesh_from_gmsh(dict(zip(lines, tags, strict=True)))
-    finally:
-        gmsh.finalize()
-
-
-def _grade(corner: int, size_at_corner: float, size_far: float, width: float) -> None:
-    """Let the size grow in proportion to the distance from ``corner``."""
-    field = gmsh.model.mesh.field
-    distance = field.add("Distance")
-    field.setNumbers(distance, "PointsList", [corner])
-    threshold = field.add("Threshold")
-    for name, value in {
-        "InField": distance,
-        "SizeMin": size_at_corner,
-        "SizeMax": size_far,
-        "DistMin": 2.0 * size_at_corner,
-        "DistMax": 2.0 * width,
-    }.items():
-        field.setNumber(threshold, name, value)
-    field.setAsBackgroundMesh(threshold)
-    for option in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
-        gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
-
-
-def _mesh_from_gmsh(tag_of_line: dict[int, FacetTag]) -> FEMesh:
-    """Return the current gmsh mesh with its boundary lines tagged."""
-    node_tags, coordinates, _ = gmsh.model.mesh.getNodes()
-    index = np.zeros(int(node_tags.max()) + 1, dtype=np.int64)
-    index[node_tags.astype(np.int64)] = np.arange(len(node_tags))
-    _, cell_nodes = gmsh.model.mesh.getElementsByType(TRIANGLE)
-    facets, tags = [], []
-    for line, tag in tag_of_line.items():
-        _, nodes = gmsh.model.mesh.getElementsByType(LINE, line)
-        facets.append(index[nodes.astype(np.int64)].reshape(-1, 3))
-        tags.append(np.full(len(facets[-1]), tag, dtype=np.int64))
-    return FEMesh(
-        nodes=coordinates.reshape(-1, 3)[:, :2].copy(),
-        cell_nodes=index[cell_nodes.astype(np.int64)].reshape(-1, 6),
-        facet_nodes=np.concatenate(facets),
-        facet_tag=np.concatenate(tags),
+    growth = (size_far - size_at_corner) / (2.0 * width)
+    outline = np.array([(0.0, -depth), (side, -depth), (side, 0.0), (edge, 0.0), (0.0, 0.0)])
+    vertices, triangles = triangulate(
+        outline, lambda x, z: min(size_far, size_at_corner + growth * float(np.hypot(x - edge, z)))
     )
+    cell_nodes, facet_nodes, nodes = _quadratic(vertices, triangles)
+    x, z = nodes[facet_nodes[:, 2]].T
+    tags = np.full(len(x), int(FacetTag.SURFACE))
+    tags[np.abs(z + depth) < 1e-9 * width] = FacetTag.BOTTOM
+    tags[np.abs(x - side) < 1e-9 * width] = FacetTag.SIDE
+    tags[np.abs(x) < 1e-9 * width] = FacetTag.SYMMETRY
+    return FEMesh(nodes, cell_nodes, facet_nodes, tags)
+
+
+def _quadratic(
+    vertices: np.ndarray, triangles: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return six-node cells, the edges on the boundary, and all nodes with mid-sides at the end."""
+    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+    unique, edge, uses = np.unique(
+        np.sort(ends, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
+    edge = edge.reshape(-1)
+    middle = len(vertices) + edge
+    cell_nodes = np.column_stack([triangles, middle.reshape(-1, 3)])
+    facet_nodes = np.column_stack([ends, middle])[uses[edge] == 1]
+    return cell_nodes, facet_nodes, np.concatenate([vertices, vertices[unique].mean(axis=1)])
