@@ -29,7 +29,7 @@ class SparsityPattern(NamedTuple):
 def sparsity_pattern(
     connectivities: Sequence[np.ndarray], n_nodes: int, dim: int
 ) -> SparsityPattern:
-    """Return the pattern of elements given by their nodes, one array (n_elements, n_element_nodes) per family."""
+    """Return the pattern of families of elements, each given by its nodes (n_elements, n_nodes)."""
     families = [
         (nodes[:, :, None] * dim + np.arange(dim)).reshape(len(nodes), nodes.shape[1] * dim)
         for nodes in connectivities

@@ -1,7 +1,4 @@
-"""The background mesh: straight-edged cells that follow the pile.
-
-Decoupled from the material points.
-"""
+"""Background mesh of straight-edged cells; it follows the pile, not the material points."""
 
 from __future__ import annotations
 
@@ -31,10 +28,7 @@ class BackgroundMesh(NamedTuple):
 
 
 def make_background_mesh(nodes: np.ndarray, cell_nodes: np.ndarray) -> BackgroundMesh:
-    """Return the mesh of triangles (3 or 6 nodes) at its reference position.
-
-    With neighbours found.
-    """
+    """Return the mesh of triangles (3 or 6 nodes) at its reference position, neighbours found."""
     return straightened(
         BackgroundMesh(
             nodes=np.ascontiguousarray(nodes, dtype=np.float64),
@@ -46,10 +40,7 @@ def make_background_mesh(nodes: np.ndarray, cell_nodes: np.ndarray) -> Backgroun
 
 
 def facets_opposite_vertices(vertices: np.ndarray) -> np.ndarray:
-    """Return the end nodes of the facets of triangles ``vertices`` (n, 3).
-
-    (n, 3, 2), facet v opposite vertex v.
-    """
+    """Return the end nodes (n, 3, 2) of the facets of triangles, facet v opposite vertex v."""
     return vertices[:, [[1, 2], [2, 0], [0, 1]]]
 
 
@@ -77,10 +68,7 @@ def straightened(mesh: BackgroundMesh) -> BackgroundMesh:
 
 
 def cell_quality(mesh: BackgroundMesh) -> np.ndarray:
-    """Return 2 r_in / r_out of each triangle, (n_cells,).
-
-    1 is equilateral, 0 flat, negative inverted.
-    """
+    """Return 2 r_in / r_out of each triangle (n_cells,): 1 equilateral, 0 flat, < 0 inverted."""
     corners = mesh.nodes[mesh.cell_nodes[:, :3]]
     edges = np.roll(corners, -1, axis=1) - corners
     length = np.linalg.norm(edges, axis=2)

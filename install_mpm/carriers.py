@@ -20,10 +20,7 @@ from install_mpm.material_points import MaterialPoints
 
 
 class GeostaticGradient(NamedTuple):
-    """Change of the geostatic state per metre of height.
-
-    By which states are moved between nearby places.
-    """
+    """Geostatic state per metre of height: it moves a state from one place to one nearby."""
 
     strain: np.ndarray
     """Elastic strain, (n_materials, 3, 3) in 1/m."""
@@ -51,8 +48,8 @@ def cell_geometry(mesh: BackgroundMesh, cell: ReferenceCell) -> CellGeometry:
         np.empty((n_cells, n_points)),
     )
     carry.cell_geometry(
-        cell.cell_type, mesh.cell_nodes, mesh.nodes, cell.integration_coordinates, cell.volume_shares,
-        geometry.shape_gradients, geometry.volume, geometry.integration_height,
+        cell.cell_type, mesh.cell_nodes, mesh.nodes, cell.integration_coordinates,
+        cell.volume_shares, geometry.shape_gradients, geometry.volume, geometry.integration_height,
     )  # fmt: skip
     return geometry
 
@@ -93,7 +90,7 @@ def integration_points(
     fill: CellFill,
     gradient: GeostaticGradient,
 ) -> tuple[IntegrationPoints, np.ndarray]:
-    """Return the integration points of all cells, and which have no material point, (n_cells, n_ip) bool.
+    """Return the integration points, and which of them hold no material point, (n_cells, n_ip).
 
     A sub-region without material points takes the mean of its cell.
     """
@@ -133,10 +130,7 @@ def integration_points(
 
 
 def _density(mass: np.ndarray, volume: np.ndarray, is_empty: np.ndarray) -> np.ndarray:
-    """Return the density of the sub-regions, that of the cell where one is empty.
-
-    Zero where the cell is empty.
-    """
+    """Return the density of the sub-regions; an empty one takes that of its cell."""
     cell_volume = volume.sum(axis=1, keepdims=True)
     of_cell = mass.sum(axis=1, keepdims=True) / np.where(cell_volume > 0.0, cell_volume, 1.0)
     density: np.ndarray = np.where(
@@ -214,7 +208,7 @@ def _split(
     cell: ReferenceCell,
     gradient: GeostaticGradient,
 ) -> MaterialPoints:
-    """Return the points with one more for each row (donor, cell, integration point) of ``split``."""
+    """Return the points with one more per row (donor, cell, integration point) of ``split``."""
     if len(split) == 0:
         return points
     volume, mass = points.volume.copy(), points.mass.copy()
@@ -246,7 +240,7 @@ def _split(
 
 
 def _position(mesh: BackgroundMesh, cell: ReferenceCell, c: int, xi: np.ndarray) -> np.ndarray:
-    """Return the place of reference coordinates ``xi`` in cell ``c`` (straight edges: vertices suffice)."""
+    """Return the place of reference coordinates ``xi`` in the straight-edged cell ``c``."""
     vertices = mesh.nodes[mesh.cell_nodes[c, : cell.n_vertices]]
     place: np.ndarray = vertices[0] + xi @ (vertices[1:] - vertices[0])
     return place

@@ -35,10 +35,7 @@ class ReferenceCell(NamedTuple):
     n_vertices: int
     dim: int
     integration_coordinates: np.ndarray
-    """Reference coordinates (n_integration_points, dim).
-
-    Each stands for the sub-region nearest to it.
-    """
+    """Reference coordinates (n_ip, dim); each stands for the sub-region nearest to it."""
     volume_shares: np.ndarray
     """Share (n_integration_points,) of the cell volume that belongs to each."""
 
@@ -56,7 +53,7 @@ def reference_cell(cell_type: CellType) -> ReferenceCell:
 
 @jit
 def shape_functions(cell_type, xi, values):
-    """Fill ``values`` (n_nodes,) with the shape functions at reference coordinates ``xi`` (dim,)."""
+    """Fill ``values`` (n_nodes,) with the shape functions at the place ``xi`` (dim,)."""
     if cell_type == _QUAD4:
         values[0] = 0.25 * (1.0 - xi[0]) * (1.0 - xi[1])
         values[1] = 0.25 * (1.0 + xi[0]) * (1.0 - xi[1])
@@ -78,7 +75,7 @@ def shape_functions(cell_type, xi, values):
 
 @jit
 def reference_gradients(cell_type, xi, gradients):
-    """Fill ``gradients`` (n_nodes, dim) with the derivatives of the shape functions by ``xi`` (dim,)."""
+    """Fill ``gradients`` (n_nodes, dim) with the derivatives of shape functions by ``xi``."""
     if cell_type == _QUAD4:
         for a in range(4):
             corner_x = 1.0 if a in (1, 2) else -1.0
@@ -102,10 +99,11 @@ def reference_gradients(cell_type, xi, gradients):
 
 
 def sub_region_points(cell: ReferenceCell, per_direction: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return coordinates (n, dim) and volume shares (n,) of points that seed every sub-region of a cell.
+    """Return coordinates (n, dim) and volume shares (n,) of points that seed all sub-regions.
 
-    A triangle has three quadrilateral sub-regions (vertex, mid-sides, centroid), a quadrilateral four quarters; each
-    gets ``per_direction`` x ``per_direction`` Gauss points, whose weights add up to the exact volume.
+    A triangle has three quadrilateral sub-regions (vertex, mid-sides, centroid), a quadrilateral
+    four quarters; each gets ``per_direction`` x ``per_direction`` Gauss points, whose weights add
+    up to the exact volume.
     """
     abscissae, weights = np.polynomial.legendre.leggauss(per_direction)
     corners = _sub_region_corners(cell)
@@ -124,10 +122,7 @@ def sub_region_points(cell: ReferenceCell, per_direction: int) -> tuple[np.ndarr
 
 
 def _sub_region_corners(cell: ReferenceCell) -> np.ndarray:
-    """Return the corners (n_sub_regions, 4, 2) of the sub-regions, one per vertex.
-
-    Anticlockwise.
-    """
+    """Return the corners (n_sub_regions, 4, 2), anticlockwise, of one sub-region per vertex."""
     if cell.cell_type == _QUAD4:
         vertices = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     else:

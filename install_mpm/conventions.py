@@ -25,9 +25,9 @@ class Kinematics(IntEnum):
 
 @dataclass(frozen=True)
 class Unit:
-    """SI unit of a quantity, kept as metadata of its annotation, e.g. ``Annotated[float, Unit("Pa")]``.
+    """SI unit of a quantity, as metadata of its annotation: ``Annotated[float, Unit("Pa")]``.
 
-    The case reader converts quantity strings to this unit; the state files write it beside each dataset.
+    The case reader converts quantity strings to this unit.
     """
 
     symbol: str
@@ -49,7 +49,7 @@ CONVENTIONS = (
     "stress and strain: tension positive",
     "kirchhoff_stress = volume_ratio * cauchy_stress; elastic strain logarithmic",
     "penetration: positive downward; rotation: right-handed about +z",
-    "interface: normal from soil to pile, normal_gap > 0 open, slip = pile minus soil, traction tension positive",
+    "interface: normal from soil to pile, normal_gap > 0 open, slip = pile minus soil",
     "interface traction: acts on the soil from the pile, local order (tangential ..., normal)",
     "six-vectors: Mandel xx, yy, zz, xy, xz, yz, inside constitutive only",
     "arrays: entity axis first, C order, float64 and int64",

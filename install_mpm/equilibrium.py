@@ -74,7 +74,8 @@ def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisatio
     """
     n_per_cell = len(model.cell.volume_shares)
     modulus = youngs_modulus(model.materials)[points.material[points.cell_start[:-1]]]
-    missing = np.where(fill.is_interior, 0.0, np.maximum(1.0 - fill.share, 0.0))
+    counted = np.add.reduceat(points.volume, points.cell_start[:-1]) / fill.cell_volume
+    missing = np.maximum(1.0 - counted, 0.0)  # of the volume, not of the points: they may crowd
     return CellOptions(
         is_finite_strain=model.is_finite_strain,
         has_mean_dilatation=model.has_mean_dilatation,
@@ -97,7 +98,7 @@ def find_equilibrium(
     start: np.ndarray,
     model: Discretisation,
 ) -> StepEquilibrium:
-    """Return the equilibrium of soil, interface and pile motion at the end of the step (paper, section 2.1, phase ii).
+    """Return the equilibrium of soil and interface at the end of the step (paper, 2.1, phase ii).
 
     ``start`` (n_nodes, dim) is the first trial displacement in m.
     """
@@ -126,8 +127,8 @@ def find_equilibrium(
 def _elastic_solution(system: _StepSystem, first: np.ndarray, solve: Solve) -> np.ndarray:
     """Return the trial displacement (n_dofs,) of elastic soil: one linear solve from ``first``.
 
-    Driven nodes beside nodes at rest would put all of the motion into one row of cells, far beyond yield; the elastic
-    solution spreads it.
+    Driven nodes beside nodes at rest would put all of the motion into one row of cells, far beyond
+    yield; the elastic solution spreads it.
     """
     soils = system.materials
     system.materials = soils._replace(model=np.full_like(soils.model, Model.HENCKY_ELASTIC))

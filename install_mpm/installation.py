@@ -228,7 +228,8 @@ def _cut(
         raise NotConvergedError(
             f"installation: the step to penetration {penetration:.4f} m does not converge after "
             f"{int(control.cuts)} halvings (last relative residual "
-            f"{result.equilibrium.newton.residuals[-1]:.1e}); use a smaller installation.step or a finer background mesh"
+            f"{result.equilibrium.newton.residuals[-1]:.1e}); use a smaller installation.step "
+            "or a finer background mesh"
         )
     return control._replace(
         step=control.step / 2.0,

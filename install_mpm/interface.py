@@ -61,7 +61,7 @@ class InterfacePoints(NamedTuple):
 
 
 def facet_rule(n_facet_nodes: int, n_points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return shape values (n_points, n_facet_nodes) and weights of a Gauss rule on a line of 2 or 3 nodes.
+    """Return shape values (n_points, n_facet_nodes) and weights of a Gauss rule on a line.
 
     Nodes are the two ends, then the mid-side; eq. (5) of the paper is the two-node case.
     """

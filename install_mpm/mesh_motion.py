@@ -17,11 +17,12 @@ def translate(
     fixed_levels: tuple[float, float],
     rigid_zone: float = 0.0,
 ) -> BackgroundMesh:
-    """Return the mesh whose nodes at ``moving_level`` (m, reference) have moved *down* by ``advance`` (m).
+    """Return the mesh with the nodes at ``moving_level`` moved *down* by ``advance`` (both in m).
 
-    Between the moving level and the two fixed levels (bottom, top) the vertical coordinate is stretched or compressed
-    linearly: paper, eqs (1) and (2), with L_b the moving level, L_m the top, u = -``advance`` and heights from the
-    bottom.  Nodes within ``rigid_zone`` above and below the moving level move as one, so that the cells around the pile
+    Between the moving level (of the reference mesh) and the two fixed levels, bottom and top, the
+    vertical coordinate is stretched or compressed linearly: paper, eqs (1) and (2), with L_b the
+    moving level, L_m the top, u = -``advance`` and heights from the bottom.  Nodes within
+    ``rigid_zone`` above and below the moving level move as one, so that the cells around the pile
     tip keep their shape; zero gives the equations as printed.
     """
     bottom, top = fixed_levels

@@ -114,10 +114,10 @@ def convergence_order(residuals: np.ndarray, round_off: float = ROUND_OFF) -> fl
 
     NaN if there are fewer than three residuals.
 
-    Three successive residuals give p = ln(r_3 / r_2) / ln(r_2 / r_1).  Residuals below ``round_off``
-    say nothing; stiff ground under a small load has it higher than the default.  The last three above
-    round-off are used; if one more lies below, it can only be too large for its order, so its
-    triple counts where it gives more.
+    Three successive residuals give p = ln(r_3 / r_2) / ln(r_2 / r_1).  Residuals below
+    ``round_off`` say nothing; stiff ground under a small load has it higher than the default.  The
+    last three above round-off are used; if one more lies below, it can only be too large for its
+    order, so its triple counts where it gives more.
     """
     n_above = int(np.count_nonzero(residuals > round_off))
     orders = [

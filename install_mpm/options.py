@@ -54,7 +54,7 @@ class Numerics:
     Acts within a step, is never stored.
     """
     fill_threshold: Share = 0.3
-    soft_stiffness: Annotated[float, Ge(0)] = 1e-3
+    soft_stiffness: Annotated[float, Ge(0)] = 1e-2
     checkpoint_every: Annotated[int, Ge(1)] = 10
     linear_solver: str = "mumps"
     random_seed: int = 0

@@ -60,7 +60,7 @@ def tangent_of(normals: np.ndarray) -> np.ndarray:
 
 
 def buried_weight(pile: Pile, tip_depth: float) -> float:
-    """Return the weight in N per metre run of the modelled half of the pile below the ground surface."""
+    """Return the weight in N per metre run of the modelled half of the pile below the surface."""
     return pile.unit_weight * pile.half_width * tip_depth
 
 

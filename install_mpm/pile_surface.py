@@ -47,7 +47,7 @@ def pile_elements(mesh: BackgroundMesh, pile: Pile) -> tuple[InterfaceElements, 
 def place_points(
     elements: InterfaceElements, mesh: BackgroundMesh
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return position (n, 2) in m and area (n,) in m^2 per metre run of the interface points on the current mesh."""
+    """Return position (n, 2) in m and area (n,) in m^2 per metre run of the interface points."""
     corners = mesh.nodes[elements.nodes]
     position = np.einsum("qa,eai->eqi", elements.shape_values, corners)
     length = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
@@ -77,7 +77,7 @@ def initial_interface(
 
 
 def geostatic_traction(ground: Ground, position: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the local traction (n, 2) in Pa of undisturbed ground on surfaces of unit ``normal``: t = R sigma n."""
+    """Return the local traction (n, 2) in Pa of undisturbed ground on surfaces: t = R sigma n."""
     dim = position.shape[1]
     stress = geostatic_stress(ground, position[:, -1], dim - 1)[:, :dim, :dim]
     traction: np.ndarray = np.einsum("pij,pjk,pk->pi", frames(normal, 0.0), stress, normal)

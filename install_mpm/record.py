@@ -123,6 +123,7 @@ def describe(record_types: Mapping[str, type]) -> str:
         for name, field in fields_of(record_type).items():
             shape = " x ".join(str(extent) for extent in field.shape) or "scalar"
             lines.append(
-                f"| `/{group}/{name}` | {shape} | {field.dtype} | {field.unit or '-'} | {field.doc} |"
+                f"| `/{group}/{name}` | {shape} | {field.dtype} "
+                f"| {field.unit or '-'} | {field.doc} |"
             )
     return "\n".join(lines)

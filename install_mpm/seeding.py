@@ -51,7 +51,7 @@ def seed_points(
 
 
 def elastic_strain_of(soil: SoilParameters, stress: np.ndarray) -> np.ndarray:
-    """Return the elastic strain (n, 3, 3) of ``soil`` that belongs to ``stress`` (n, 3, 3) in Pa."""
+    """Return the elastic strain (n, 3, 3) of ``soil`` under ``stress`` (n, 3, 3) in Pa."""
     material = np.zeros(len(stress), dtype=np.int64)
     strain = np.empty((len(stress), 6))
     six_vectors = np.ascontiguousarray(stress[:, ROW, COLUMN] * SCALE)
@@ -62,6 +62,6 @@ def elastic_strain_of(soil: SoilParameters, stress: np.ndarray) -> np.ndarray:
 
 
 def geostatic_gradient(ground: Ground, vertical: int) -> GeostaticGradient:
-    """Return the change of geostatic stress and strain per metre of height (both are linear in the ground)."""
+    """Return geostatic stress and strain per metre of height; both are linear in the ground."""
     per_metre = -geostatic_stress(ground, np.array([-1.0]), vertical)
     return GeostaticGradient(strain=elastic_strain_of(ground.soil, per_metre), stress=per_metre)

@@ -101,7 +101,8 @@ def read_header(file: h5py.File, file_format: str, version: int) -> str:
         )
     if file.attrs.get("version") != version:
         raise StateFileError(
-            f"{path}: version {file.attrs.get('version')} of {file_format} is not version {version}; {remedy}"
+            f"{path}: version {file.attrs.get('version')} of {file_format} "
+            f"is not version {version}; {remedy}"
         )
     if file.attrs.get("conventions") != conventions_hash():
         raise StateFileError(f"{path}: written under other conventions of sign or axes; {remedy}")
@@ -125,7 +126,8 @@ def open_state_file(path: Path) -> h5py.File:
         return h5py.File(path, "r")
     except OSError as error:
         raise StateFileError(
-            f"{path}: truncated or not an HDF5 file ({error}); write it again with the stage that makes it"
+            f"{path}: truncated or not an HDF5 file ({error}); "
+            "write it again with the stage that makes it"
         ) from error
 
 

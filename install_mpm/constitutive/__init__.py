@@ -1,4 +1,1 @@
-"""Constitutive laws shared by the installation (MPM) and the service (FE) stage.
-
-Imports nothing of the project.
-"""
+"""Constitutive laws shared by installation (MPM) and service (FE); a leaf of the project."""

@@ -21,7 +21,7 @@ STICK, SLIP, OPEN = 0, 1, 2
 
 
 def pack(parameters: CoulombInterface, undrained_shear_strength: np.ndarray) -> np.ndarray:
-    """Return packed parameters (n, 5) for interface points beside soil of the given strength (n,) in Pa."""
+    """Return packed parameters (n, 5) of points beside soil of this strength (n,) in Pa."""
     cohesion = parameters.cohesion + parameters.adhesion_factor * np.asarray(
         undrained_shear_strength
     )
@@ -76,12 +76,13 @@ def update_traction(slip_increment, parameters, traction_old, traction, tangent)
 
     plastic_slip = overstress / (stiffness_s + stiffness_n * tan_friction * tan_dilation)
     shear = shear_trial - stiffness_s * plastic_slip
-    if shear < 0.0:
+    if shear < 0.0 and tan_friction > 0.0:
         # shear strength cannot be negative: the point has left the cone through its apex
         traction[:] = 0.0
         traction[normal] = cohesion / tan_friction
         tangent[:, :] = 0.0
         return OPEN
+    shear = max(shear, 0.0)  # a smooth interface has no apex: only round-off makes it negative
 
     softening = stiffness_s / (stiffness_s + stiffness_n * tan_friction * tan_dilation)
     direction = np.empty(normal)
@@ -104,10 +105,7 @@ def update_traction(slip_increment, parameters, traction_old, traction, tangent)
 
 @parallel_jit
 def update_all(slip_increment, parameters, traction_old, traction, tangent, status):
-    """Evaluate the law at all interface points, point axis first.
-
-    The last three arrays are filled.
-    """
+    """Evaluate the law at all points, point axis first; the last three arrays are filled."""
     for p in prange(slip_increment.shape[0]):
         status[p] = update_traction(
             slip_increment[p], parameters[p], traction_old[p], traction[p], tangent[p]

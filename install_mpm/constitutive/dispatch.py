@@ -49,16 +49,13 @@ def pack(soils: Sequence[SoilParameters]) -> Materials:
 
 
 def state_variable_names(soil: SoilParameters) -> tuple[str, ...]:
-    """Return the names of the state variables of a law.
-
-    In the order of the columns of ``state_variables``.
-    """
+    """Return the names of a law's state variables, one per column of ``state_variables``."""
     names: tuple[str, ...] = MODULE_OF[MODEL_OF[type(soil)]].STATE_VARIABLES
     return names
 
 
 def initial_state(soil: SoilParameters, depth: np.ndarray) -> np.ndarray:
-    """Return the state variables (n, n_state) of undisturbed soil at ``depth`` (n,) in m below the surface."""
+    """Return the state variables (n, n_state) of undisturbed soil at ``depth`` (n,) in m."""
     if isinstance(soil, VonMises):
         return von_mises.initial_state(soil, depth)
     return np.zeros((len(depth), 0))
@@ -101,10 +98,7 @@ def update_stress(
 
 @jit
 def elastic_strain_from_stress(model, stress, parameters, elastic_strain):
-    """Fill the elastic strain (6,) that belongs to ``stress`` (6,) in Pa.
-
-    Every law so far is Hencky elastic.
-    """
+    """Fill the elastic strain (6,) of ``stress`` (6,) in Pa; so far every law is Hencky elastic."""
     elastic.elastic_strain_from_stress(stress, parameters, elastic_strain)
 
 

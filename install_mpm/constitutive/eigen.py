@@ -15,11 +15,9 @@ MAX_SWEEPS = 30
 
 @jit
 def symmetric_eigen(tensor, values, vectors):
-    """Fill eigenvalues ``values`` (3,) and eigenvectors, the columns of ``vectors`` (3, 3).
+    """Fill eigenvalues (3,) and eigenvectors, the columns of ``vectors`` (3, 3), of ``tensor``.
 
-    Of ``tensor`` (3, 3).
-
-    ``tensor`` is overwritten.
+    ``tensor`` (3, 3) is overwritten.
     """
     for i in range(3):
         for j in range(3):

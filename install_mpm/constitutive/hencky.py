@@ -16,7 +16,7 @@ from install_mpm.constitutive.eigen import symmetric_eigen
 from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
 
 REPEATED = 1e-8
-"""Relative distance of eigenvalues below which the limit of the divided difference of ln is used."""
+"""Relative distance of eigenvalues below which the divided difference of ln takes its limit."""
 
 
 @jit
@@ -109,10 +109,7 @@ def spatial_tangent(tangent, stretches_squared, directions, dim, spatial):
 
 @jit
 def _half_log_difference(first, second):
-    """Return (ln first - ln second) / 2 / (first - second).
-
-    Or its limit where the two are equal.
-    """
+    """Return (ln first - ln second) / 2 / (first - second), or its limit where they are equal."""
     if abs(first - second) <= REPEATED * first:
         return 1.0 / (first + second)
     return 0.5 * np.log(first / second) / (first - second)
@@ -120,10 +117,7 @@ def _half_log_difference(first, second):
 
 @jit
 def small_trial_strain(displacement_gradient, strain, trial):
-    """Fill the trial strain (6,) of infinitesimal kinematics.
-
-    ``strain`` (3, 3) plus the symmetric gradient.
-    """
+    """Fill the small trial strain (6,): ``strain`` (3, 3) plus the symmetric gradient."""
     for component in range(6):
         i, j = ROW[component], COLUMN[component]
         trial[component] = SCALE[component] * (
@@ -133,10 +127,7 @@ def small_trial_strain(displacement_gradient, strain, trial):
 
 @jit
 def small_tangent(tangent, dim, spatial):
-    """Fill ``spatial`` (3, 3, 3, 3) with d sigma_ij / d u_k,l of infinitesimal kinematics, for k.
-
-    L < ``dim``.
-    """
+    """Fill ``spatial`` (3, 3, 3, 3) with d sigma_ij / d u_k,l of small strain, k, l < ``dim``."""
     for first in range(6):
         i, j = ROW[first], COLUMN[first]
         for second in range(6):

@@ -84,9 +84,9 @@ def sum_sub_regions(
 def vertex_fill(
     cell_nodes, n_vertices, cell_volume, point_order, cell_start, points, filled, capacity
 ):
-    """Fill volume of soil ``filled`` (n_nodes,) and of cells ``capacity`` (n_nodes,) that belong to each vertex.
+    """Add up, per vertex, the volume of soil ``filled`` and of cells ``capacity``, both (n_nodes,).
 
-    The linear functions of the vertices share out both, because quadratic ones are negative in places.
+    The linear functions of the vertices share out both: quadratic ones are negative in places.
     """
     for c in range(cell_nodes.shape[0]):
         for v in range(n_vertices):
@@ -166,7 +166,7 @@ def carry_points(
     for chunk in prange(CHUNKS):
         scratch = _make_carry_scratch(cell_nodes.shape[1], nodes.shape[1])
         for c in range(chunk * n_cells // CHUNKS, (chunk + 1) * n_cells // CHUNKS):
-            # parallel loops must not write to fields of a tuple: numba loses it; a called function may
+            # numba loses writes to the fields of a tuple made in a parallel loop itself
             status[c] = _carry_cell(
                 cell_type, cell_nodes[c], nodes, displacement, cell_volume_ratio[c], point_order,
                 cell_start[c], cell_start[c + 1], points, materials, strain_gradient,

@@ -97,9 +97,10 @@ def make_scratch(most_points, n_nodes, dim):
 def evaluate_cells(
     cell_nodes, is_active, points, displacement, materials, options, force, stiffness, trial
 ):
-    """Fill ``force`` (n_cells, n_nodes, dim) in N, ``stiffness`` (n_cells, n_nodes, dim, n_nodes, dim) and ``trial``.
+    """Fill ``force`` in N, ``stiffness`` in N/m and ``trial`` of all cells, zeros where inactive.
 
-    ``displacement`` (n_nodes, dim) is the increment of the step.  Cells that are not active get zeros.
+    ``force`` is (n_cells, n_nodes, dim), ``stiffness`` (n_cells, n_nodes, dim, n_nodes, dim), and
+    ``displacement`` (n_nodes, dim) the increment of the step.
     """
     n_cells, n_nodes = cell_nodes.shape
     dim = displacement.shape[1]
@@ -288,7 +289,7 @@ def _update_point(q, local, mean_ratio, points, materials, options, scratch, tri
 
 @jit
 def _add_point(gradients, weight, options, scratch, force, stiffness):
-    """Add one integration point; ``weight`` = v J / (J_n Jbar) turns tau into Cauchy stress times volume."""
+    """Add one integration point; ``weight`` = v J / (J_n Jbar) makes tau a force times length."""
     n_nodes, dim = gradients.shape
     stress, spatial = scratch.tensor, scratch.spatial
     traction = np.empty(dim)

@@ -21,7 +21,7 @@ FOUND, PROJECTED = 0, 1
 
 @jit
 def barycentric(nodes, cell_nodes, point, values):
-    """Fill ``values`` (3,) with the barycentric coordinates of ``point`` (2,) in the triangle of three vertices."""
+    """Fill ``values`` (3,) with the barycentric coordinates of ``point`` (2,) in a triangle."""
     x0, y0 = nodes[cell_nodes[0], 0], nodes[cell_nodes[0], 1]
     a, b = nodes[cell_nodes[1], 0] - x0, nodes[cell_nodes[2], 0] - x0
     c, d = nodes[cell_nodes[1], 1] - y0, nodes[cell_nodes[2], 1] - y0
@@ -35,10 +35,10 @@ def barycentric(nodes, cell_nodes, point, values):
 def locate_points(
     nodes, cell_nodes, cell_neighbours, position, cell, reference_coordinates, status, scratch
 ):
-    """Fill ``cell`` (n,), ``reference_coordinates`` (n, 2) and ``status`` (n,) of the points at ``position``.
+    """Fill ``cell`` (n,), ``reference_coordinates`` (n, 2) and ``status`` (n,) of all points.
 
-    ``cell`` holds a first guess.  A point outside the mesh is moved (``position`` changes) to the nearest place inside
-    and gets the status ``PROJECTED``.  ``scratch`` (3,) is work space.
+    ``cell`` holds a first guess.  A point outside the mesh is moved (``position`` changes) to the
+    nearest place inside and gets the status ``PROJECTED``.  ``scratch`` (3,) is work space.
     """
     for p in range(position.shape[0]):
         status[p] = FOUND

@@ -7,10 +7,7 @@ from install_mpm._jit import jit
 
 @jit
 def scatter_stiffness(blocks, slots, values):
-    """Add element ``blocks`` (n_elements, n, n) to the matrix ``values`` through ``slots``.
-
-    In element order.
-    """
+    """Add element ``blocks`` (n_elements, n, n) to the matrix ``values`` through ``slots``."""
     for e in range(slots.shape[0]):
         for i in range(slots.shape[1]):
             for j in range(slots.shape[2]):
