@@ -1,7 +1,7 @@
 """Views of the results for ParaView: VTU files of material points, background mesh and FE models.
 
 An export, not a state file: nothing reads it back.  Coordinates are (x, z, 0), so what ParaView
-calls XX, YY, ZZ, XY, YZ, XZ are the horizontal, vertical and out-of-plane stress and the shear stresses.
+calls XX, YY, ZZ is horizontal, vertical and out of plane.
 """
 
 from __future__ import annotations

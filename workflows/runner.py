@@ -20,7 +20,7 @@ from workflows.manifest import (
     write_manifest,
 )
 from workflows.progress import Reporter
-from workflows.state_files import STATE_FILES, case_for, check_existing
+from workflows.state_files import STATE_FILES, case_for, check_existing, read_checked
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,8 @@ STAGES = (
         sources=("install_mpm", "workflows/stages/install.py"),
     ),
     Stage(
-        "hand_off", "screwpile handoff DIR", "hand the ground over to finite elements", names.HANDOFF_KEYS,
+        "hand_off", "screwpile handoff DIR", "hand the ground over to finite elements",
+        names.HANDOFF_KEYS,
         reads=(names.INSTALLED,), writes=(names.HANDED_OFF, names.CERTIFICATE),
         sources=(*NUMERICS, "workflows/stages/hand_off.py"),
     ),
@@ -114,7 +115,7 @@ def is_up_to_date(stage: Stage, case: Case, directory: Path) -> bool:
     return record.outputs == outputs and record.inputs == inputs_of(stage, case, directory)
 
 
-def check_inputs(stage: Stage, directory: Path) -> None:
+def check_present(stage: Stage, directory: Path) -> None:
     """Check that the files that ``stage`` reads are there.
 
     Raises
@@ -124,8 +125,35 @@ def check_inputs(stage: Stage, directory: Path) -> None:
     """
     for file in stage.reads:
         if not (directory / file).exists():
-            writer = next(other for other in STAGES if file in other.writes)
-            raise DirectoryError(f"{directory / file}: no such file; run `{writer.command}` first")
+            command = _writer(file).command
+            raise DirectoryError(f"{directory / file}: no such file; run `{command}` first")
+
+
+def check_made_from_each_other(stage: Stage, case: Case, directory: Path) -> None:
+    """Check that the files that ``stage`` reads were made from the files that are there now.
+
+    Raises
+    ------
+    DirectoryError, StateFileError
+        Naming the first that is out of date, or a state file that is damaged or foreign.
+    """
+    records = read_manifest(directory).stages
+    for file in stage.reads:
+        writer = _writer(file)
+        inputs = records[writer.name].inputs if writer.name in records else {}
+        for source in writer.reads:
+            path = directory / source
+            if source not in inputs or not path.exists() or file_hash(path) == inputs[source]:
+                continue
+            if source in STATE_FILES:
+                read_checked(directory, source, case)
+            raise DirectoryError(
+                f"{directory / file} was made from another {source}; run `{writer.command}` first"
+            )
+
+
+def _writer(file: str) -> Stage:
+    return next(stage for stage in STAGES if file in stage.writes)
 
 
 def run_stage(stage: Stage, case: Case, directory: Path, reporter: Reporter) -> None:
@@ -133,10 +161,11 @@ def run_stage(stage: Stage, case: Case, directory: Path, reporter: Reporter) -> 
 
     Raises
     ------
-    DirectoryError
-        If a file that it reads is missing.
+    DirectoryError, StateFileError
+        If a file that it reads is missing, damaged, out of date or of another case.
     """
-    check_inputs(stage, directory)
+    check_present(stage, directory)
+    check_made_from_each_other(stage, case, directory)
     inputs = inputs_of(stage, case, directory)
     start = time.perf_counter()
     with reporter.stage(stage.name, stage.doing) as advance:
@@ -208,6 +237,6 @@ def run_from_files(name: str, directory: Path, reporter: Reporter | None = None)
     if not directory.is_dir():
         raise DirectoryError(f"{directory}: no such directory; run `screwpile install` first")
     stage = stage_named(name)
-    check_inputs(stage, directory)
+    check_present(stage, directory)
     first = next(file for file in stage.reads if file in STATE_FILES)
     run_stage(stage, case_for(directory, first), directory, reporter or Reporter())

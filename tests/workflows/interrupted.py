@@ -81,9 +81,8 @@ def differences(first, second):
     with h5py.File(first) as one, h5py.File(second) as other:
         left, right = contents(one), contents(other)
     for name in sorted(left.keys() | right.keys()):
-        if name not in left or name not in right:
-            different.append(name)
-        elif np.asarray(left[name]).tobytes() != np.asarray(right[name]).tobytes():
+        is_shared = name in left and name in right
+        if not is_shared or np.asarray(left[name]).tobytes() != np.asarray(right[name]).tobytes():
             different.append(name)
     return different
 
