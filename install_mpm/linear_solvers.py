@@ -59,6 +59,7 @@ def mumps(pattern: SparsityPattern) -> Solve:
         solver.solve(load, solution)
         result = np.array(solution.getArray())
         if solver.getConvergedReason() < 0 or not np.isfinite(result).all():
+            factorisation.reset()  # PETSc would leave out the factorisation after one that failed
             raise SingularMatrixError("MUMPS could not factorise the tangent")
         return result
 
