@@ -71,7 +71,7 @@ def solve_newton(
         try:
             correction = solve(state.tangent, -state.residual)
         except SingularMatrixError:
-            break
+            return NewtonResult(x, False, np.array(residuals))
         x, state = _backtrack(evaluate, x, correction, residuals[-1])
         if not state.is_admissible:
             break
@@ -106,7 +106,7 @@ def _backtrack(
         if best is None or not best[1].is_admissible or _relative(state) < _relative(best[1]):
             best = (trial, state)
     assert best is not None  # the loop above runs at least once
-    return best
+    return best[0], evaluate(best[0])  # what an evaluation leaves behind has to be of this trial
 
 
 def convergence_order(residuals: np.ndarray, round_off: float = ROUND_OFF) -> float:
