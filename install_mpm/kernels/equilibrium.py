@@ -156,7 +156,8 @@ def _evaluate_cell(
             force,
             stiffness,
         )
-    if options.has_mean_dilatation and options.volumetric_term[c] > 0.0:
+    has_mean_dilatation = options.has_mean_dilatation and options.is_finite_strain
+    if has_mean_dilatation and options.volumetric_term[c] > 0.0:
         _add_volumetric_term(
             first, last, mean_ratio, options.volumetric_term[c], points, scratch, force, stiffness
         )
