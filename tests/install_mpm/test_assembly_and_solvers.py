@@ -1,0 +1,149 @@
+"""Assembly against dense addition, constraints, and the direct solvers."""
+
+import numpy as np
+import pytest
+
+from install_mpm.assembly import as_matrix, sparsity_pattern
+from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
+from install_mpm.linear_solvers import SOLVERS, SingularMatrixError
+
+N_NODES, DIM = 9, 2
+N_DOFS = N_NODES * DIM
+every_solver = pytest.mark.parametrize("solver", SOLVERS)
+
+
+@pytest.fixture
+def families():
+    """Two families of elements; node 8 belongs to none."""
+    return [np.array([[0, 1, 2], [2, 1, 3], [5, 4, 3]]), np.array([[3, 7], [6, 0]])]
+
+
+@pytest.fixture
+def pattern(families):
+    return sparsity_pattern(families, N_NODES, DIM)
+
+
+@pytest.fixture
+def blocks(families, rng):
+    return [
+        rng.normal(size=(len(nodes), nodes.shape[1] * DIM, nodes.shape[1] * DIM))
+        for nodes in families
+    ]
+
+
+def dofs_of(nodes):
+    return [DIM * node + i for node in nodes for i in range(DIM)]
+
+
+def assembled(pattern, blocks):
+    values = np.zeros(len(pattern.indices))
+    for family, slots in zip(blocks, pattern.slots, strict=True):
+        scatter_stiffness(family, slots, values)
+    return values
+
+
+def test_stiffness_equals_dense_addition(families, blocks, pattern):
+    expected = np.zeros((N_DOFS, N_DOFS))
+    for nodes, family in zip(families, blocks, strict=True):
+        for element, block in zip(nodes, family, strict=True):
+            expected[np.ix_(dofs_of(element), dofs_of(element))] += block
+    values = assembled(pattern, blocks)
+    np.testing.assert_allclose(as_matrix(pattern, values).toarray(), expected, atol=1e-15)
+
+
+def test_force_equals_dense_addition(families, pattern, rng):
+    vector, expected = np.zeros(N_DOFS), np.zeros(N_DOFS)
+    for nodes, dofs in zip(families, pattern.dofs, strict=True):
+        blocks = rng.normal(size=dofs.shape)
+        scatter_force(blocks, dofs, vector)
+        for element, block in zip(nodes, blocks, strict=True):
+            np.add.at(expected, dofs_of(element), block)
+    np.testing.assert_allclose(vector, expected, atol=1e-15)
+
+
+def test_pattern_is_sorted_without_duplicates_and_has_the_diagonal(pattern):
+    for row in range(N_DOFS):
+        columns = pattern.indices[pattern.indptr[row] : pattern.indptr[row + 1]]
+        assert (np.diff(columns) > 0).all()
+        assert row in columns
+    assert pattern.indptr.dtype == pattern.indices.dtype == np.int32
+
+
+def test_pattern_takes_a_family_without_elements(families, rng):
+    pattern = sparsity_pattern([families[0], np.empty((0, 6), dtype=np.int64)], N_NODES, DIM)
+    assert pattern.slots[1].shape == (0, 12, 12)
+    assert len(pattern.indptr) == N_DOFS + 1
+
+
+def test_constrained_dofs_become_identity_rows_and_columns(blocks, pattern, rng):
+    values = assembled(pattern, blocks)
+    expected = as_matrix(pattern, values.copy()).toarray()
+    is_free = rng.uniform(size=N_DOFS) < 0.6
+    expected[~is_free] = 0.0
+    expected[:, ~is_free] = 0.0
+    expected[~is_free, ~is_free] = 1.0
+    constrain(pattern.indptr, pattern.indices, is_free, values)
+    np.testing.assert_array_equal(as_matrix(pattern, values).toarray(), expected)
+
+
+@pytest.fixture
+def system(blocks, pattern, rng):
+    """Values of an unsymmetric regular matrix, with dofs that are not free, and a load."""
+    values = assembled(pattern, blocks)
+    is_free = np.ones(N_DOFS, dtype=bool)
+    is_free[[0, 5, 16, 17]] = False
+    constrain(pattern.indptr, pattern.indices, is_free, values)
+    return values, rng.normal(size=N_DOFS)
+
+
+@every_solver
+def test_solution_equals_that_of_the_dense_matrix(solver, system, pattern):
+    values, load = system
+    expected = np.linalg.solve(as_matrix(pattern, values).toarray(), load)
+    result = SOLVERS[solver](pattern)(values, load)
+    np.testing.assert_allclose(result, expected, rtol=1e-9, atol=1e-10)
+
+
+@every_solver
+def test_solver_is_used_again_with_other_values(solver, system, pattern, rng):
+    """The second system gets its own answer, and the first answer is not overwritten by it."""
+    values, load = system
+    solve = SOLVERS[solver](pattern)
+    first = solve(values, load)
+    kept = first.copy()
+    for _ in range(3):
+        other, other_load = values * rng.uniform(0.5, 2.0, len(values)), rng.normal(size=N_DOFS)
+        expected = np.linalg.solve(as_matrix(pattern, other).toarray(), other_load)
+        np.testing.assert_allclose(solve(other, other_load), expected, rtol=1e-8, atol=1e-8)
+    np.testing.assert_array_equal(first, kept)
+    np.testing.assert_array_equal(solve(values, load), kept)
+
+
+@every_solver
+def test_two_solvers_of_one_pattern_do_not_disturb_each_other(solver, system, pattern):
+    values, load = system
+    solvers = [SOLVERS[solver](pattern) for _ in range(2)]
+    expected = solvers[0](values, load)
+    solvers[1](2.0 * values, load)
+    np.testing.assert_array_equal(solvers[0](values, load), expected)
+
+
+@every_solver
+def test_singular_matrix_is_an_error_and_the_solver_survives_it(solver, system, pattern):
+    values, load = system
+    solve = SOLVERS[solver](pattern)
+    expected = solve(values, load)
+    singular = values.copy()
+    singular[pattern.indptr[2] : pattern.indptr[3]] = 0.0
+    with pytest.raises(SingularMatrixError):
+        solve(singular, load)
+    np.testing.assert_allclose(solve(values, load), expected, rtol=1e-12)
+
+
+@every_solver
+def test_matrix_with_nan_is_an_error(solver, system, pattern):
+    values, load = system
+    values = values.copy()
+    values[3] = np.nan
+    with pytest.raises(SingularMatrixError):
+        SOLVERS[solver](pattern)(values, load)
