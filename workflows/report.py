@@ -1,0 +1,62 @@
+"""The report: one self-contained HTML page made from the files of a results directory."""
+
+from __future__ import annotations
+
+from html import escape
+from pathlib import Path
+from string import Template
+
+from workflows.directory import REPORT, write_text
+from workflows.manifest import created_by
+from workflows.report_data import Results, read_results
+from workflows.report_sections import Section, sections
+from workflows.report_style import styled
+from workflows.report_units import shown
+
+TEMPLATES = Path(__file__).parent / "templates"
+
+
+def write_report(directory: Path) -> Path:
+    """Write ``report.html`` into ``directory`` from the results in it; return its path.
+
+    The page opens without network: pictures, styles and text are all inside.
+
+    Raises
+    ------
+    DirectoryError
+        If the directory or one of its JSON files is missing or damaged, or a file belongs to
+        another case.
+    StateFileError
+        If a state file is missing or damaged.
+    """
+    results = read_results(directory)
+    with styled():
+        page = page_html(results, sections(results))
+    path = directory / REPORT
+    write_text(path, page)
+    return path
+
+
+def page_html(results: Results, parts: list[Section]) -> str:
+    """Return the whole page."""
+    template = Template((TEMPLATES / "report.html").read_text(encoding="utf-8"))
+    return template.substitute(
+        title=escape(results.case.title),
+        subtitle=escape(_subtitle(results)),
+        css=(TEMPLATES / "report.css").read_text(encoding="utf-8"),
+        contents=" ".join(f'<a href="#{part.name}">{escape(part.title)}</a>' for part in parts),
+        sections="\n".join(
+            f'<section id="{part.name}"><h2>{escape(part.title)}</h2>\n{part.html}\n</section>'
+            for part in parts
+        ),
+        created_by=escape(created_by()),
+    )
+
+
+def _subtitle(results: Results) -> str:
+    """Return the installation in one sentence."""
+    case, pile = results.case, results.installed.pile
+    return (
+        f"A pile of {shown(2.0 * case.pile.half_width, 'm', 2)} width, jacked from "
+        f"{shown(case.pile.embedment, 'm', 3)} to {shown(float(pile.tip_depth), 'm', 3)} depth."
+    )

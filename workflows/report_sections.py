@@ -1,0 +1,155 @@
+"""Sections of the report: what is shown, in which order, and what is said about it."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import NamedTuple
+
+from matplotlib.figure import Figure
+
+from workflows import report_handoff, report_installation, report_service, report_tables
+from workflows.report_data import Results
+from workflows.report_html import code, details, figure
+from workflows.report_text import CAPTIONS, LIMITS, METHOD
+from workflows.report_units import shown, significant
+
+
+class Section(NamedTuple):
+    """Part of the page with a heading of its own."""
+
+    name: str
+    title: str
+    html: str
+
+
+def sections(results: Results) -> list[Section]:
+    """Return all sections of the report, in order."""
+    return [
+        Section("results", "Results", results_html(results)),
+        Section("case", "The case", case_html(results)),
+        Section("installation", "Installation", installation_html(results)),
+        Section("convergence", "Convergence", convergence_html(results)),
+        Section("handoff", "Hand-over", handoff_html(results)),
+        Section("service", "Service", service_html(results)),
+        Section("method", "Method and limits", METHOD + LIMITS),
+        Section("provenance", "Provenance", provenance_html(results)),
+    ]
+
+
+def results_html(results: Results) -> str:
+    """Return cards, failed checks and the headline table."""
+    n_failed = sum(not figure["is_met"] for figure in results.certificate.values())
+    warning = ""
+    if n_failed:
+        warning = (
+            f'<p class="warning">Checks of the certificate that failed: {n_failed}. Look at '
+            '<a href="#handoff">Hand-over</a> before using these results.</p>'
+        )
+    note = (
+        "<p>Ratio: installed over wished in place. B is the pile's width. Downward displacement "
+        "and load are positive, so uplift is negative.</p>"
+    )
+    return cards_html(results) + warning + report_tables.headline_table(results) + note
+
+
+def cards_html(results: Results) -> str:
+    """Return the figures that a reader looks for first."""
+    figures = results.summary["results"]
+    installation = figures["installation"]
+    depth = shown(installation["tip_depth_m"], "m", 3)
+    cards = [
+        (shown(installation["crowd_force_N"], "N"), f"installation force at {depth} tip depth")
+    ]
+    for name, programme in figures["service"].items():
+        ratio = programme.get("ratio", {}).get("capacity")
+        if ratio is not None:
+            change = f"{100.0 * (ratio - 1.0):+.0f} %".replace("-", "−")
+            spaced = escape(report_tables.spaced(name))
+            cards.append((change, f"capacity in {spaced} against wished in place"))
+    for shares in figures["continuity"].values():
+        for share in list(shares.values())[-1:]:
+            cards.append((significant(share, 3), "resistance pushed on over installation force"))
+    html = (f'<div class="card"><b>{value}</b><span>{text}</span></div>' for value, text in cards)
+    return f'<div class="cards">{"".join(html)}</div>'
+
+
+def case_html(results: Results) -> str:
+    """Return the case as a table, and as text to run it again."""
+    return report_tables.case_tables(results.case) + details(
+        "Case file, complete and in SI units", code(results.case_text)
+    )
+
+
+def captioned(name: str, picture: Figure) -> str:
+    """Return a picture with the caption of its name."""
+    return figure(name, picture, " ".join(CAPTIONS[name].split()))
+
+
+def installation_html(results: Results) -> str:
+    """Return the pictures of the installation."""
+    case, installed = results.case, results.installed
+    pictures = {
+        "force": report_installation.force_against_depth(case, installed.history),
+        "points": report_installation.mesh_and_points(case, installed),
+        "stress": report_installation.stresses(case, installed),
+    }
+    return "\n".join(captioned(name, picture) for name, picture in pictures.items())
+
+
+def convergence_html(results: Results) -> str:
+    """Return the history of Newton's method and what was irregular."""
+    history = results.installed.history
+    return "\n".join(
+        [
+            captioned("newton", report_installation.convergence(history)),
+            report_tables.convergence_table(results.summary["convergence"]),
+            captioned("irregular", report_installation.irregularities(history)),
+        ]
+    )
+
+
+def handoff_html(results: Results) -> str:
+    """Return the pictures of the hand-over and the certificate."""
+    case, installed, handed_off = results.case, results.installed, results.handed_off
+    certificate = results.certificate
+    return "\n".join(
+        [
+            captioned("handed_off", report_handoff.stress_handed_over(case, installed, handed_off)),
+            captioned("tractions", report_handoff.tractions(installed, handed_off)),
+            "<h3>Certificate</h3>",
+            report_tables.certificate_table(certificate, with_limit=True),
+            details(
+                "Figures for information",
+                report_tables.certificate_table(certificate, with_limit=False),
+            ),
+        ]
+    )
+
+
+def service_html(results: Results) -> str:
+    """Return curves, continuity and mechanisms."""
+    case, service, wished = results.case, results.service, results.wished
+    parts = [captioned("curves", report_service.curves(case, service, wished))]
+    continuity = report_service.continuity(case, results.installed, service)
+    if continuity is not None:
+        parts.append(captioned("continuity", continuity))
+    caption = " ".join(CAPTIONS["mechanism"].split())
+    for number, result in enumerate(service.programmes):
+        name, start = result.programme.name, getattr(result.programme, "start", None)
+        if start == "released":
+            picture = report_service.mechanism(case, service, wished, name)
+            text = caption.format(report_tables.spaced(name))
+            parts.append(figure(f"mechanism_{number}", picture, text))
+    return "\n".join(parts)
+
+
+def provenance_html(results: Results) -> str:
+    """Return timings, versions, hashes and seeds."""
+    summary = results.summary
+    return "\n".join(
+        [
+            report_tables.timing_table(summary["timings_s"]),
+            report_tables.version_table(summary["versions"]),
+            report_tables.hash_table(summary),
+        ]
+    )

@@ -1,0 +1,194 @@
+"""Pictures of the pile in service: curves of both models, displacement and plastic strain."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from install_mpm.constitutive.parameters import VonMises
+from install_mpm.constitutive.von_mises import PLASTIC_SHEAR
+from install_mpm.state_file import InstalledState
+from service_fe.options import Displace, Release
+from service_fe.results import (
+    CAPACITY_DISPLACEMENT,
+    Curve,
+    ProgrammeResult,
+    ServiceResult,
+    characteristics,
+    head_load_at,
+)
+from workflows.case import Case
+from workflows.compare import CONTINUITY_SHARES
+from workflows.report_fields import (
+    colour_bar,
+    draw_nodal,
+    draw_pile,
+    draw_polygons,
+    finish,
+    picture_height,
+    positive_norm,
+    sub_regions,
+    window_of,
+)
+from workflows.report_style import (
+    INK,
+    INTENSITY,
+    MODEL_COLOURS,
+    MODEL_NAMES,
+    MUTED,
+    SEQUENTIAL,
+    grid,
+    panels,
+)
+
+STRAIN_NORM = Normalize(0.0, 10.0)
+"""Plastic shear strains are shown up to 10 %."""
+
+
+def curves(case: Case, service: ServiceResult, wished: ServiceResult) -> Figure:
+    """Return head load against displacement of every programme, installed and wished in place."""
+    columns = 2
+    rows = -(-len(service.programmes) // columns)
+    figure, axes = panels(rows, columns, 10.0, 3.3 * rows)
+    for here in axes.flat[len(service.programmes) :]:
+        here.set_visible(False)
+    for here, result in zip(axes.flat, service.programmes, strict=False):
+        for model in (service, wished):
+            _draw_curve(here, model.model, model.programme(result.programme.name), case)
+        here.set(
+            xlabel="displacement, downward (mm)", ylabel="head load (kN/m)", title=_title(result)
+        )
+        here.axhline(0.0, color=MUTED, linewidth=0.6)
+        grid(here)
+    axes[0, 0].legend()
+    return figure
+
+
+def _title(result: ProgrammeResult) -> str:
+    start = getattr(result.programme, "start", None)
+    name = result.programme.name.replace("_", " ")
+    return name if start is None else f"{name}, from the {start} pile"
+
+
+def _draw_curve(axes: Any, model: str, result: ProgrammeResult, case: Case) -> None:
+    """Draw one curve with its capacities: dot at 0.1 widths, cross where the tangents meet."""
+    curve, colour = result.curve, MODEL_COLOURS[model]
+    axes.plot(
+        1e3 * curve.displacement,
+        curve.head_load / 1e3,
+        ".-",
+        color=colour,
+        label=MODEL_NAMES[model],
+        markersize=3.0,
+    )
+    if not isinstance(result.programme, Displace) or result.programme.start != "released":
+        return
+    width = 2.0 * case.pile.half_width
+    found = characteristics(curve, width)
+    direction = np.sign(curve.displacement[-1])
+    if found.capacity is not None:
+        place = 1e3 * direction * CAPACITY_DISPLACEMENT * width
+        axes.plot(place, found.capacity / 1e3, "o", color=colour, markersize=7.0, clip_on=False)
+    if found.tangent_capacity is not None:
+        place = 1e3 * (found.tangent_capacity - curve.head_load[0]) / found.initial_stiffness
+        axes.plot(place, found.tangent_capacity / 1e3, "x", color=colour, markersize=7.0)
+
+
+def continuity(case: Case, installed: InstalledState, service: ServiceResult) -> Figure | None:
+    """Return the installation force and how the pushed-on pile continues it, None if it cannot."""
+    width, history = 2.0 * case.pile.half_width, installed.history
+    pushed = [
+        result
+        for result in service.programmes
+        if isinstance(result.programme, Displace)
+        and result.programme.start == "equilibrated"
+        and result.programme.displacement > 0.0
+    ]
+    if not pushed or float(installed.pile.penetration) == 0.0:
+        return None
+    figure, axes = panels(1, 1, 6.4, 3.2)
+    here, end = axes[0, 0], float(installed.pile.penetration)
+    force = float(history.crowd_force[-1]) / 1e3
+    here.plot(
+        1e3 * (history.penetration - end),
+        history.crowd_force / 1e3,
+        color=INK,
+        label="jacked (material points)",
+    )
+    for result in pushed:
+        curve, label = result.curve, f"{result.programme.name.replace('_', ' ')} (finite elements)"
+        here.plot(1e3 * curve.displacement, curve.head_load / 1e3, ".-",
+                  color=MODEL_COLOURS["installed"], label=label)  # fmt: skip
+        _draw_shares(here, curve, width)
+    reach = 1e3 * max(float(result.curve.displacement[-1]) for result in pushed)
+    band = here.fill_between([0.0, reach], 0.9 * force, 1.1 * force, color=MUTED, alpha=0.25)
+    band.set(linewidth=0.0, label="±10 % of the last installation force")
+    here.set_xlim(-4.0 * reach, 1.1 * reach)
+    here.set_ylim(0.0, 1.3 * float(history.crowd_force.max()) / 1e3)
+    here.set(xlabel="displacement since the end of jacking (mm)", ylabel="force (kN/m)")
+    here.legend(loc="lower left")
+    grid(here)
+    return figure
+
+
+def _draw_shares(axes: Any, curve: Curve, width: float) -> None:
+    """Mark the displacements at which the continuity is read."""
+    for share in CONTINUITY_SHARES:
+        if share * width <= curve.displacement[-1] * (1.0 + 1e-9):
+            load = head_load_at(curve, share * width) / 1e3
+            axes.plot(1e3 * share * width, load, "o", color=MODEL_COLOURS["installed"])
+            axes.annotate(f"{share:g} B", (1e3 * share * width, load), (0, 8),
+                          textcoords="offset points", ha="center", fontsize=8)  # fmt: skip
+
+
+def mechanism(case: Case, service: ServiceResult, wished: ServiceResult, name: str) -> Figure:
+    """Return displacement and plastic shear strain of the programme ``name`` in both models.
+
+    Soil without strength has no plastic strain: the picture then shows the displacement only.
+    """
+    models = (service, wished)
+    n_fields = 2 if isinstance(case.ground.soil, VonMises) else 1
+    height = picture_height(window_of(case), 4, 11.0) + 0.3
+    figure, axes = panels(1, 2 * n_fields, 5.5 * n_fields, height)
+    largest = np.concatenate([_distance(model, name) for model in models])
+    norm = positive_norm(largest)
+    for here, model in zip(axes[0, :2], models, strict=True):
+        drawn = draw_nodal(here, model.mesh, _distance(model, name), norm, SEQUENTIAL)
+        _finish(here, case, MODEL_NAMES[model.model], is_first=here is axes[0, 0])
+    colour_bar(figure, drawn, axes[0, :2], f"displacement in {name!r} (mm)", "max")
+    for here, model in zip(axes[0, 2:], models, strict=False):
+        cells = sub_regions(model.mesh, model.integration.position)
+        strain = 100.0 * plastic_shear(model, name)
+        drawn = draw_polygons(here, cells, strain, STRAIN_NORM, INTENSITY)
+        _finish(here, case, MODEL_NAMES[model.model], is_first=False)
+    if n_fields == 2:
+        colour_bar(figure, drawn, axes[0, 2:], f"plastic shear strain in {name!r} (%)", "max")
+    return figure
+
+
+def _finish(axes: Any, case: Case, title: str, *, is_first: bool) -> None:
+    window = window_of(case)
+    draw_pile(axes, case.pile.half_width, case.final_tip_depth, window)
+    finish(axes, window, title, with_height=is_first)
+
+
+def _distance(model: ServiceResult, name: str) -> np.ndarray:
+    """Return the displacement (node,) in mm."""
+    moved = model.programme(name).soil.displacement
+    distance: np.ndarray = 1e3 * np.linalg.norm(moved, axis=1)
+    return distance
+
+
+def plastic_shear(model: ServiceResult, name: str) -> np.ndarray:
+    """Return the plastic shear strain (n_q,) since the release before the programme ``name``."""
+    start = 0.0
+    for result in model.programmes:
+        end = result.state.state_variables[:, PLASTIC_SHEAR]
+        if result.programme.name == name:
+            return np.asarray(end - start)
+        if isinstance(result.programme, Release):
+            start = end
+    raise KeyError(name)

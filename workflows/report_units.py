@@ -1,0 +1,51 @@
+"""Display units: the only place where SI values become kPa, kN/m and mm."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+DISPLAY = {
+    "m": (1.0, "m"),
+    "m^3": (1.0, "m³/m"),
+    "kg": (1e-3, "t/m"),
+    "N": (1e-3, "kN/m"),
+    "N/m": (1e-6, "kN/m per mm"),
+    "N/m^3": (1e-3, "kN/m³"),
+    "Pa": (1e-3, "kPa"),
+    "Pa/m": (1e-3, "kPa/m"),
+    "rad": (180.0 / math.pi, "°"),
+}
+"""Factor and name of the display unit of each SI unit; forces and volumes are per metre run."""
+
+
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def shown(value: float | None, unit: str = "", digits: int = 4) -> str:
+    """Return ``value`` in SI ``unit`` as text with its display unit; a dash if there is none."""
+    if value is None:
+        return "–"
+    factor, name = DISPLAY.get(unit, (1.0, unit))
+    return f"{significant(factor * value, digits)} {name}".rstrip()
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """Return a number with some significant digits, as a power of ten only if it is tiny."""
+    if value == 0.0:
+        return "0"
+    if abs(value) < 1e-3:
+        mantissa, exponent = f"{value:.1e}".split("e")
+        return f"{mantissa} × 10{str(int(exponent)).translate(SUPERSCRIPT)}".replace("-", "−")
+    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    return f"{value:.{decimals}f}".replace("-", "−")
+
+
+def plain(value: Any, unit: str = "") -> str:
+    """Return an option of a case as text: numbers without trailing zeros, words as they are."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value).replace("_", " ")
+    factor, name = DISPLAY.get(unit, (1.0, unit))
+    scaled = factor * value
+    text = significant(scaled) if 0.0 < abs(scaled) < 1e-3 else f"{scaled:.6g}".replace("-", "−")
+    return f"{text} {name}".rstrip()
