@@ -176,9 +176,10 @@ def run_as_command(command: typer.Typer) -> None:
     """Run ``command``; exit with status 2 and one sentence after a user error."""
     try:
         command()
-    except KeyboardInterrupt:
-        print("stopped; --resume continues the installation", file=sys.stderr)
-        sys.exit(INTERRUPTED)
+    except SystemExit as end:  # typer turns Ctrl-C into this status
+        if end.code == INTERRUPTED:
+            print("screwpile: stopped; --resume continues an installation", file=sys.stderr)
+        raise
     except Exception as error:
         if not is_user_error(error):
             raise

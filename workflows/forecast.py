@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from install_mpm.conventions import dimension
-from service_fe.options import Displace
+from service_fe.loading import imposed_steps
 from workflows.case import Case
 
 # Cost model, measured on one core of a 2-core machine, numba compiled, OpenBLAS, MUMPS.
@@ -63,7 +63,7 @@ def forecast(case: Case) -> Forecast:
     dim = dimension(case.kinematics)
     dofs, fe_dofs = dim * len(mesh.nodes), dim * len(fe_mesh.nodes)
     steps = math.ceil(round(case.installation.penetration / case.installation.step, 9))
-    service_steps = sum(_programme_steps(programme) for programme in case.service.programmes)
+    service_steps = sum(len(imposed_steps(programme, 1.0)) for programme in case.service.programmes)
     install_time = steps * ITERATIONS_PER_STEP * dofs * INSTALL_SECONDS_PER_DOF
     service_time = 2 * service_steps * ITERATIONS_PER_STEP * fe_dofs * SERVICE_SECONDS_PER_DOF
     return Forecast(
@@ -79,12 +79,6 @@ def forecast(case: Case) -> Forecast:
         memory=BASE_MEMORY + MEMORY_PER_DOF * max(dofs, fe_dofs) + MEMORY_PER_POINT * n_points,
         seconds=START_SECONDS + install_time + service_time,
     )
-
-
-def _programme_steps(programme: object) -> int:
-    if isinstance(programme, Displace):
-        return math.ceil(round(abs(programme.displacement) / programme.step, 9))
-    return int(getattr(programme, "steps", 1))
 
 
 def print_forecast(case: Case, sizes: Forecast, console: Console | None = None) -> None:

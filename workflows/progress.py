@@ -10,11 +10,10 @@ from typing import Any
 from rich.console import Console
 from rich.progress import (
     BarColumn,
-    MofNCompleteColumn,
     Progress,
     SpinnerColumn,
+    TaskProgressColumn,
     TextColumn,
-    TimeElapsedColumn,
     TimeRemainingColumn,
 )
 
@@ -36,7 +35,7 @@ def service_observer(n_programmes: int, advance: Advance) -> Callable[[Any], Non
     def observe(progress: Any) -> None:
         nonlocal finished
         share = 100 * progress.step // progress.n_steps
-        note = f"%, {progress.programme}, {progress.head_load / 1e3:.0f} kN/m"
+        note = f"{progress.programme}, {progress.head_load / 1e3:.0f} kN/m"
         advance((100 * finished + share) // n_programmes, 100, note)
         finished += progress.step == progress.n_steps
 
@@ -55,7 +54,7 @@ class Reporter:
         start = time.perf_counter()
         if self.console.is_terminal:
             with _bar(self.console) as progress:
-                task = progress.add_task(f"{name}: {doing}", total=None, note="")
+                task = progress.add_task(name, total=None, note=doing)
 
                 def advance(done: int, total: int, note: str) -> None:
                     progress.update(task, completed=done, total=total, note=note)
@@ -74,12 +73,10 @@ def _bar(console: Console) -> Progress:
     return Progress(
         SpinnerColumn(),
         TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
+        BarColumn(bar_width=20),
+        TaskProgressColumn(),
         TimeRemainingColumn(),
-        TextColumn("{task.fields[note]}"),
+        TextColumn("left; {task.fields[note]}"),
         console=console,
         transient=True,
     )

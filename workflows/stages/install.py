@@ -35,9 +35,9 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
 
     def observe(state: InstalledState, progress: InstallationProgress) -> None:
         advance(
-            round(1000.0 * progress.penetration),
-            round(1000.0 * progress.target),
-            f"mm, {progress.crowd_force / 1e3:.0f} kN/m, {progress.iterations} iterations",
+            round(1e6 * progress.penetration),
+            round(1e6 * progress.target),
+            f"{progress.penetration:.2f} m, {progress.crowd_force / 1e3:.0f} kN/m",
         )
         if progress.load_step > 0 and progress.load_step % case.numerics.checkpoint_every == 0:
             write_installed_state(checkpoint, state, created_by())
