@@ -19,7 +19,7 @@ from install_mpm.ground import Ground, geostatic_stress
 from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import SYMMETRY_FACTOR
 from workflows.case import Case
-from workflows.report_style import INK, PILE
+from workflows.report_style import INK, MUTED, PILE
 
 PIXELS = 420
 """Pixels across a picture of material points."""
@@ -120,7 +120,9 @@ def draw_mesh(axes: Any, nodes: np.ndarray, cell_nodes: np.ndarray) -> None:
     """Draw the edges of triangles ``cell_nodes`` (n, 3) as thin lines."""
     ends = np.concatenate([cell_nodes[:, [0, 1]], cell_nodes[:, [1, 2]], cell_nodes[:, [2, 0]]])
     edges = np.unique(np.sort(ends, axis=1), axis=0)
-    axes.add_collection(LineCollection(list(nodes[edges]), colors=INK, linewidths=0.3, alpha=0.55))
+    lines = LineCollection(list(nodes[edges]), colors=MUTED, linewidths=0.4)
+    lines.set_rasterized(True)
+    axes.add_collection(lines)
 
 
 def draw_pile(axes: Any, half_width: float, tip_depth: float, window: Window) -> None:
