@@ -228,8 +228,7 @@ def _split(
             "volume": volume[donor],
             "mass": mass[donor],
             "elastic_log_strain": new["elastic_log_strain"] + rise * gradient.strain[row],
-            "kirchhoff_stress": new["kirchhoff_stress"]
-            + rise * new["volume_ratio"] * gradient.stress[row],
+            "kirchhoff_stress": new["kirchhoff_stress"] + rise * gradient.stress[row],
         }
         for name, value in new.items():
             added[name].append(value)
