@@ -21,6 +21,8 @@ class IntegrationPoints(NamedTuple):
     """Position in the reference cell, (n, dim)."""
     shape_gradients: np.ndarray
     """Shape gradients by start-of-step position, (n, n_nodes, dim) in 1/m."""
+    hoop_gradients: np.ndarray
+    """N_a / r of axisymmetric cells, zero otherwise, (n, n_nodes) in 1/m."""
     volume: np.ndarray
     """Start-of-step volume that the point stands for, (n,) in m^3; zero where the cell is empty."""
     density: np.ndarray
@@ -69,6 +71,8 @@ class Trial(NamedTuple):
     """(n, 3, 3) in Pa"""
     state_variables: np.ndarray
     """(n, n_state)"""
+    volume_ratio: np.ndarray
+    """Volume change in the step that the stress belongs to, (n,)."""
     cell_volume_ratio: np.ndarray
     """Mean dilatation of each cell in the step, (n_cells,)."""
     status: np.ndarray
@@ -82,6 +86,7 @@ def empty_trial(points: IntegrationPoints) -> Trial:
         np.zeros((n_points, 3, 3)),
         np.zeros((n_points, 3, 3)),
         np.zeros_like(points.state_variables),
+        np.ones(n_points),
         np.ones(n_cells),
         np.zeros(n_cells, dtype=np.int64),
     )

@@ -71,7 +71,9 @@ def trial_log_strain(increment, log_strain, trial, stretches_squared, directions
 
 @jit
 def spatial_tangent(tangent, stretches_squared, directions, dim, spatial):
-    """Fill ``spatial`` (3, 3, 3, 3) with d tau_ij / d l_kl, l = d(dF) dF^-1, for k, l < ``dim``.
+    """Fill ``spatial`` (3, 3, 3, 3) with d tau_ij / d l_kl, l = d(dF) dF^-1.
+
+    Filled for k, l < ``dim`` and for k = l = 2, the out-of-plane direction of two dimensions.
 
     ``tangent`` (6, 6) is the consistent tangent of the law; the eigenpairs are those of b_e,trial.
     In the eigenbasis d eps_AB = w_AB (l_AB b_B + b_A l_BA) with w the divided difference of (1/2)
@@ -83,8 +85,10 @@ def spatial_tangent(tangent, stretches_squared, directions, dim, spatial):
             weight[a, b] = _half_log_difference(stretches_squared[a], stretches_squared[b])
     rate = np.empty((3, 3))
     strain = np.empty(6)
-    for k in range(dim):
-        for m in range(dim):
+    for k in range(3):
+        for m in range(3):
+            if not is_modelled(k, m, dim):
+                continue
             for a in range(3):
                 for b in range(3):
                     rate[a, b] = weight[a, b] * (
@@ -108,6 +112,12 @@ def spatial_tangent(tangent, stretches_squared, directions, dim, spatial):
 
 
 @jit
+def is_modelled(k, m, dim):
+    """Return whether a gradient can have a component (k, m): in the plane, or out of it on the diagonal."""
+    return (k < dim and m < dim) or (k == 2 and m == 2)
+
+
+@jit
 def _half_log_difference(first, second):
     """Return (ln first - ln second) / 2 / (first - second), or its limit where they are equal."""
     if abs(first - second) <= REPEATED * first:
@@ -127,12 +137,12 @@ def small_trial_strain(displacement_gradient, strain, trial):
 
 @jit
 def small_tangent(tangent, dim, spatial):
-    """Fill ``spatial`` (3, 3, 3, 3) with d sigma_ij / d u_k,l of small strain, k, l < ``dim``."""
+    """Fill ``spatial`` (3, 3, 3, 3) with d sigma_ij / d u_k,l of small strain, as above."""
     for first in range(6):
         i, j = ROW[first], COLUMN[first]
         for second in range(6):
             k, m = ROW[second], COLUMN[second]
-            if k < dim and m < dim:
+            if is_modelled(k, m, dim):
                 value = tangent[first, second] / (SCALE[first] * SCALE[second])
                 spatial[i, j, k, m] = value
                 spatial[j, i, k, m] = value

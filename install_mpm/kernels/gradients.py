@@ -31,6 +31,24 @@ def shape_gradients(cell_type, xi, nodes, vertex_nodes, reference, gradients):
 
 
 @jit
+def hoop_gradients(shape_values, nodes, cell_nodes, hoop):
+    """Fill ``hoop`` (n_nodes,) with N_a / r of an axisymmetric cell; return the radius r in m."""
+    radius = 0.0
+    for a in range(cell_nodes.shape[0]):
+        radius += shape_values[a] * nodes[cell_nodes[a], 0]
+    for a in range(cell_nodes.shape[0]):
+        hoop[a] = shape_values[a] / radius
+    return radius
+
+
+@jit
+def add_hoop_gradient(displacement, cell_nodes, hoop, gradient):
+    """Add the hoop term u_r / r to ``gradient`` (3, 3), axis 2."""
+    for a in range(cell_nodes.shape[0]):
+        gradient[2, 2] += hoop[a] * displacement[cell_nodes[a], 0]
+
+
+@jit
 def displacement_gradient(displacement, cell_nodes, gradients, gradient):
     """Fill ``gradient`` (3, 3) with du_i/dx_j from nodal ``displacement`` (n, dim).
 

@@ -1,0 +1,93 @@
+"""Deformation of the integration points of a cell in a step, and its mean dilatation."""
+
+from __future__ import annotations
+
+from install_mpm._jit import jit
+from install_mpm.constitutive.hencky import determinant
+from install_mpm.kernels.cell_records import SMALLEST_VOLUME_RATIO
+from install_mpm.kernels.gradients import add_hoop_gradient, displacement_gradient
+
+
+@jit
+def deform_cell(first, last, cell_nodes, points, displacement, options, scratch):
+    """Fill dF, J, gx, h and d of the points of a cell, and its dbar.
+
+    Returns
+    -------
+    float
+        Jbar, or -1 if a point has collapsed.
+    """
+    scratch.mean_divergence[:, :] = 0.0
+    volume = 0.0
+    deformed_volume = 0.0
+    for q in range(first, last):
+        if points.volume[q] == 0.0:
+            continue
+        local = q - first
+        increment = scratch.increment[local]
+        displacement_gradient(displacement, cell_nodes, points.shape_gradients[q], increment)
+        if options.is_axisymmetric:
+            add_hoop_gradient(displacement, cell_nodes, points.hoop_gradients[q], increment)
+        if not options.is_finite_strain:
+            scratch.jacobian[local] = 1.0
+            scratch.gradients[local] = points.shape_gradients[q]
+            scratch.hoop[local] = points.hoop_gradients[q]
+            continue
+        for i in range(3):
+            increment[i, i] += 1.0
+        jacobian = determinant(increment)
+        if jacobian < SMALLEST_VOLUME_RATIO or increment[2, 2] <= 0.0:
+            return -1.0
+        scratch.jacobian[local] = jacobian
+        push_gradients(points.shape_gradients[q], increment, jacobian, scratch.gradients[local])
+        scratch.divergence[local] = scratch.gradients[local]
+        if options.is_axisymmetric:
+            _push_hoop(points.hoop_gradients[q], increment, scratch, local)
+        volume += points.volume[q]
+        deformed_volume += points.volume[q] * jacobian
+        scratch.mean_divergence[:, :] += points.volume[q] * jacobian * scratch.divergence[local]
+    if volume == 0.0:
+        return 1.0
+    scratch.mean_divergence[:, :] /= deformed_volume
+    return deformed_volume / volume
+
+
+@jit
+def _push_hoop(start, increment, scratch, local):
+    """Fill h_a = N_a / r in the current position and add it to d_a."""
+    for a in range(start.shape[0]):
+        scratch.hoop[local, a] = start[a] / increment[2, 2]
+        scratch.divergence[local, a, 0] += scratch.hoop[local, a]
+
+
+@jit
+def push_gradients(start, increment, jacobian, current):
+    """Fill ``current`` (n_nodes, dim) = dF^-T ``start``.
+
+    Gradients by the current instead of the start-of-step position.
+    """
+    if start.shape[1] == 2:
+        in_plane = jacobian / increment[2, 2]
+        for a in range(start.shape[0]):
+            x, y = start[a, 0], start[a, 1]
+            current[a, 0] = (increment[1, 1] * x - increment[1, 0] * y) / in_plane
+            current[a, 1] = (increment[0, 0] * y - increment[0, 1] * x) / in_plane
+        return
+    for a in range(start.shape[0]):
+        for j in range(3):
+            total = 0.0
+            for i in range(3):
+                n, m = (i + 1) % 3, (i + 2) % 3
+                k, l = (j + 1) % 3, (j + 2) % 3
+                cofactor = increment[n, k] * increment[m, l] - increment[n, l] * increment[m, k]
+                total += cofactor * start[a, i] / jacobian
+            current[a, j] = total
+
+
+@jit
+def scale_volume(increment, ratio, n_axes):
+    """Scale ``increment`` (3, 3) in place: its determinant grows by ``ratio``, in ``n_axes`` axes."""
+    factor = ratio ** (1.0 / n_axes)
+    for i in range(n_axes):
+        for j in range(3):
+            increment[i, j] *= factor
