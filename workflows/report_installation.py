@@ -49,24 +49,40 @@ BAND = 0.5
 
 def mesh_and_points(case: Case, installed: InstalledState) -> Figure:
     """Return background mesh and material points before and after; bands of points show strain."""
-    window, points, mesh = window_of(case), installed.material_points, installed.background_mesh
-    start = initial_position(points)
-    band = np.floor(-start[:, 1] / (BAND * 2.0 * case.pile.half_width)) % 2.0
-    before = (mesh.reference_nodes, start, case.pile.embedment)
-    after = (mesh.nodes, points.position, float(installed.pile.tip_depth))
+    window, mesh = window_of(case), installed.background_mesh
+    before = installed._replace(
+        background_mesh=mesh._replace(nodes=mesh.reference_nodes),
+        material_points=installed.material_points._replace(
+            position=initial_position(installed.material_points)
+        ),
+    )
+    tips = case.pile.embedment, float(installed.pile.tip_depth)
     figure, axes = panels(1, 3, 10.0, picture_height(window, 3, 10.0))
-    for here, title, part, (nodes, position, tip) in (
-        (axes[0, 0], "before", window, before),
-        (axes[0, 1], "after", window, after),
-        (axes[0, 2], "after, beside the tip", tip_window(case), after),
+    for here, title, part, state, tip in (
+        (axes[0, 0], "before", window, before, tips[0]),
+        (axes[0, 1], "after", window, installed, tips[1]),
+        (axes[0, 2], "after, beside the tip", tip_window(case), installed, tips[1]),
     ):
-        draw_mesh(here, nodes, mesh.cell_nodes[:, :3])
         size = 2.0 * (window.right / part.right) ** 2
-        dots = here.scatter(*position.T, c=np.where(band, WISHED, SAND), s=size, linewidths=0.0)
-        dots.set_rasterized(True)
+        draw_bands(here, case, state, initial_position(installed.material_points)[:, 1], size)
         draw_pile(here, case.pile.half_width, tip, part)
         finish(here, part, title, with_height=here is not axes[0, 1])
     return figure
+
+
+def draw_bands(
+    axes: Any, case: Case, state: InstalledState, initial_height: np.ndarray, size: float = 2.0
+) -> None:
+    """Draw mesh and points of ``state``, coloured in bands of ``initial_height`` (n,)."""
+    draw_mesh(axes, state.background_mesh.nodes, state.background_mesh.cell_nodes[:, :3])
+    band = np.floor(-initial_height / (BAND * 2.0 * case.pile.half_width)) % 2.0
+    dots = axes.scatter(
+        *state.material_points.position.T,
+        c=np.where(band, WISHED, SAND),
+        s=size,
+        linewidths=0.0,
+    )
+    dots.set_rasterized(True)
 
 
 def stresses(case: Case, installed: InstalledState) -> Figure:

@@ -31,6 +31,9 @@ DIVERGING, SEQUENTIAL, INTENSITY = "RdBu_r", "viridis", "magma_r"
 RESOLUTION = 150
 """Dots per inch of the raster parts."""
 
+PAGE_RESOLUTION = 110
+"""Dots per inch of pictures for the documentation."""
+
 STYLE = {
     "figure.facecolor": "none",
     "axes.facecolor": "none",
@@ -93,5 +96,5 @@ def png_of(figure: Figure) -> bytes:
     """Return a figure as PNG on white ground, e.g. for the documentation."""
     buffer = io.BytesIO()
     with styled():
-        figure.savefig(buffer, format="png", dpi=RESOLUTION, facecolor="white")
+        figure.savefig(buffer, format="png", dpi=PAGE_RESOLUTION, facecolor="white")
     return buffer.getvalue()

@@ -175,6 +175,15 @@ def test_a_directory_that_is_a_file_or_missing_is_refused(tmp_path, monkeypatch,
     assert_refused(monkeypatch, capsys, "no such directory", "serve", tmp_path / "nowhere")
 
 
+@pytest.mark.dolfinx
+@pytest.mark.parametrize("name", ["case.toml", "manifest.json", "certificate.json"])
+def test_a_damaged_text_file_is_named(name, results_copy, monkeypatch, capsys):
+    (results_copy / name).write_text("{", encoding="utf-8")
+    before = content(results_copy)
+    assert_refused(monkeypatch, capsys, f"{results_copy / name}", "compare", results_copy)
+    assert content(results_copy) == before
+
+
 @pytest.mark.gmsh
 def test_check_prints_a_forecast(monkeypatch, capsys):
     assert screwpile(monkeypatch, "check", QUICK) == 0
