@@ -14,8 +14,10 @@ import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.cells import ReferenceCell
+from install_mpm.conventions import Kinematics
 from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.kernels import carry
+from install_mpm.kernels import cell_geometry as kernels
 from install_mpm.material_points import MaterialPoints
 
 
@@ -29,27 +31,38 @@ class GeostaticGradient(NamedTuple):
 
 
 class CellGeometry(NamedTuple):
-    """Geometry of the cells at the start of a step."""
+    """Geometry of the cells at the start of a step; first axes (n_cells, n_integration_points)."""
 
     shape_gradients: np.ndarray
-    """(n_cells, n_integration_points, n_nodes, dim) in 1/m."""
-    volume: np.ndarray
-    """(n_cells,) in m^3."""
+    """(..., n_nodes, dim) in 1/m."""
+    hoop_gradients: np.ndarray
+    """(..., n_nodes) in 1/m, zero unless axisymmetric."""
+    integration_volume: np.ndarray
+    """Volume that belongs to each integration point of a full cell, (...) in m^3."""
     integration_height: np.ndarray
-    """Height of the integration points, (n_cells, n_integration_points) in m."""
+    """Height of the integration points, (...) in m."""
+
+    @property
+    def volume(self) -> np.ndarray:
+        """Volume of the cells, (n_cells,) in m^3."""
+        volume: np.ndarray = self.integration_volume.sum(axis=1)
+        return volume
 
 
-def cell_geometry(mesh: BackgroundMesh, cell: ReferenceCell) -> CellGeometry:
+def cell_geometry(
+    mesh: BackgroundMesh, cell: ReferenceCell, kinematics: Kinematics
+) -> CellGeometry:
     """Return shape gradients, volumes and heights of all cells."""
-    n_cells, n_points = len(mesh.cell_nodes), len(cell.volume_shares)
+    shape = (len(mesh.cell_nodes), len(cell.reference_volumes))
     geometry = CellGeometry(
-        np.empty((n_cells, n_points, cell.n_nodes, cell.dim)),
-        np.empty(n_cells),
-        np.empty((n_cells, n_points)),
+        np.empty((*shape, cell.n_nodes, cell.dim)),
+        np.empty((*shape, cell.n_nodes)),
+        np.empty(shape),
+        np.empty(shape),
     )
-    carry.cell_geometry(
+    kernels.cell_geometry(
         cell.cell_type, mesh.cell_nodes, mesh.nodes, cell.integration_coordinates,
-        cell.volume_shares, geometry.shape_gradients, geometry.volume, geometry.integration_height,
+        cell.reference_volumes, kinematics == Kinematics.AXISYMMETRIC, *geometry,
     )  # fmt: skip
     return geometry
 
@@ -67,8 +80,9 @@ def fill_cells(
     start = np.searchsorted(points.cell[order], np.arange(n_cells + 1))
     filled, capacity = np.zeros(len(mesh.nodes)), np.zeros(len(mesh.nodes))
     carry.vertex_fill(
-        mesh.cell_nodes, cell.n_vertices, geometry.volume, order, start, points, filled, capacity
-    )
+        mesh.cell_nodes, cell.n_vertices, cell.integration_coordinates,
+        geometry.integration_volume, order, start, points, filled, capacity,
+    )  # fmt: skip
     vertex_fill = filled / np.where(capacity > 0.0, capacity, 1.0)
     vertices = mesh.cell_nodes[:, : cell.n_vertices]
     volume = np.bincount(points.cell, weights=points.volume, minlength=n_cells)
@@ -113,13 +127,14 @@ def integration_points(
     for total in (log_ratio, strain, state):
         _mean_of_cell_where_empty(total, soil_volume, is_empty)
     own_volume = np.where(is_empty, 1.0, soil_volume)
-    share = geometry.volume[:, None] * cell.volume_shares
+    share = geometry.integration_volume
     volume = np.where(fill.is_interior[:, None], share, np.minimum(soil_volume, share))
     volume[~fill.is_active] = 0.0
     return IntegrationPoints(
         cell_start=np.arange(shape[0] + 1) * shape[1],
         reference_coordinates=np.tile(cell.integration_coordinates, (shape[0], 1)),
         shape_gradients=geometry.shape_gradients.reshape(-1, cell.n_nodes, cell.dim),
+        hoop_gradients=geometry.hoop_gradients.reshape(-1, cell.n_nodes),
         volume=volume.ravel(),
         density=_density(soil_mass, soil_volume, is_empty),
         volume_ratio=np.exp(log_ratio / own_volume).ravel(),

@@ -36,19 +36,19 @@ class ReferenceCell(NamedTuple):
     dim: int
     integration_coordinates: np.ndarray
     """Reference coordinates (n_ip, dim); each stands for the sub-region nearest to it."""
-    volume_shares: np.ndarray
-    """Share (n_integration_points,) of the cell volume that belongs to each."""
+    reference_volumes: np.ndarray
+    """Weights (n_integration_points,) of the integration rule: volumes of the reference cell."""
 
 
 def reference_cell(cell_type: CellType) -> ReferenceCell:
     """Return the reference cell with the integration rule of its type."""
     if cell_type == CellType.QUAD4:
         corner = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * _GAUSS
-        return ReferenceCell(_QUAD4, 4, 4, 2, corner, np.full(4, 0.25))
+        return ReferenceCell(_QUAD4, 4, 4, 2, corner, np.ones(4))
     if cell_type == CellType.TRI3:
-        return ReferenceCell(_TRI3, 3, 3, 2, np.full((1, 2), 1 / 3), np.ones(1))
+        return ReferenceCell(_TRI3, 3, 3, 2, np.full((1, 2), 1 / 3), np.full(1, 0.5))
     near_vertex = np.array([[1 / 6, 1 / 6], [2 / 3, 1 / 6], [1 / 6, 2 / 3]])
-    return ReferenceCell(_TRI6, 6, 3, 2, near_vertex, np.full(3, 1 / 3))
+    return ReferenceCell(_TRI6, 6, 3, 2, near_vertex, np.full(3, 1 / 6))
 
 
 @jit

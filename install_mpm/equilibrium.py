@@ -11,11 +11,12 @@ from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.cells import ReferenceCell
 from install_mpm.constitutive.dispatch import Materials, Model
 from install_mpm.constitutive.elastic import BULK, SHEAR
-from install_mpm.conventions import GRAVITY
+from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
 from install_mpm.interface import InterfaceElements, InterfacePoints, frames
 from install_mpm.kernels.carry import body_force
-from install_mpm.kernels.equilibrium import CellOptions, evaluate_cells
+from install_mpm.kernels.cell_records import CellOptions
+from install_mpm.kernels.equilibrium import evaluate_cells
 from install_mpm.kernels.interface_force import evaluate_interface
 from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
 from install_mpm.linear_solvers import Solve
@@ -33,6 +34,7 @@ class Discretisation(NamedTuple):
     pattern: SparsityPattern
     solve: Solve
     numerics: Numerics
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN
     has_mean_dilatation: bool = True
     is_finite_strain: bool = True
 
@@ -72,13 +74,14 @@ def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisatio
 
     Volumetric term and soft partly filled cells.
     """
-    n_per_cell = len(model.cell.volume_shares)
+    n_per_cell = len(model.cell.reference_volumes)
     modulus = youngs_modulus(model.materials)[points.material[points.cell_start[:-1]]]
     counted = np.add.reduceat(points.volume, points.cell_start[:-1]) / fill.cell_volume
     missing = np.maximum(1.0 - counted, 0.0)  # of the volume, not of the points: they may crowd
     return CellOptions(
         is_finite_strain=model.is_finite_strain,
-        has_mean_dilatation=model.has_mean_dilatation,
+        has_mean_dilatation=model.has_mean_dilatation and model.is_finite_strain,
+        is_axisymmetric=model.kinematics == Kinematics.AXISYMMETRIC,
         volumetric_term=model.numerics.volumetric_term * modulus,
         soft_stiffness=model.numerics.soft_stiffness
         * modulus

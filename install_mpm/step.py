@@ -21,11 +21,12 @@ from install_mpm.carriers import (
     inject,
     integration_points,
 )
+from install_mpm.conventions import Kinematics
 from install_mpm.equilibrium import Discretisation, Prescribed, StepEquilibrium, find_equilibrium
 from install_mpm.integration_points import CellFill
 from install_mpm.interface import InterfacePoints
-from install_mpm.kernels.carry import carry_points
 from install_mpm.kernels.locate import PROJECTED, locate_points
+from install_mpm.kernels.update import carry_points
 from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import PileMotion
 
@@ -74,7 +75,7 @@ def step(
     the mesh follows. Nothing that is passed in is changed, so a step that does not converge needs
     no undo.
     """
-    geometry = cell_geometry(mesh, model.cell)
+    geometry = cell_geometry(mesh, model.cell, model.kinematics)
     fill = fill_cells(points, mesh, model.cell, geometry, model.numerics.fill_threshold)
     enriched = inject(points, mesh, model.cell, geometry, fill, gradient)
     if len(enriched.mass) > len(points.mass):
@@ -144,7 +145,8 @@ def carry(
     carry_points(
         model.cell.cell_type, mesh.cell_nodes, mesh.nodes, equilibrium.displacement,
         equilibrium.trial.cell_volume_ratio, fill.point_order, fill.cell_start, points,
-        model.materials, gradient.strain, model.has_mean_dilatation, updated, status,
+        model.materials, gradient.strain, model.has_mean_dilatation,
+        model.kinematics == Kinematics.AXISYMMETRIC, updated, status,
     )  # fmt: skip
     return updated, not status.any()
 

@@ -90,9 +90,7 @@ def add_dilatation_coupling(gradients, hoop, divergence, weight, n_axes, scratch
                 response += stretch * hoop[a]
             for b in range(n_nodes):
                 for k in range(dim):
-                    stiffness[a, i, b, k] += (
-                        weight * response * (mean[b, k] - divergence[b, k])
-                    )
+                    stiffness[a, i, b, k] += weight * response * (mean[b, k] - divergence[b, k])
 
 
 @jit

@@ -79,10 +79,14 @@ def _evaluate_cell(
     for q in range(first, last):
         if points.volume[q] == 0.0:
             continue
-        if _update_point(q, q - first, mean_ratio, n_axes, points, materials, options, scratch, trial):
+        if _update_point(
+            q, q - first, mean_ratio, n_axes, points, materials, options, scratch, trial
+        ):
             trial.status[c] = LAW_FAILED
             return
-        _add_point(q, q - first, mean_ratio, n_axes, points, options, scratch, force, stiffness, trial)
+        _add_point(
+            q, q - first, mean_ratio, n_axes, points, options, scratch, force, stiffness, trial
+        )
     if options.has_mean_dilatation and options.volumetric_term[c] > 0.0:
         add_volumetric_term(
             first, last, mean_ratio, options.volumetric_term[c], points, scratch, force, stiffness
