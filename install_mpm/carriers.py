@@ -139,7 +139,7 @@ def integration_points(
         density=_density(soil_mass, soil_volume, is_empty),
         volume_ratio=np.exp(log_ratio / own_volume).ravel(),
         elastic_log_strain=(strain / own_volume[:, :, None, None]).reshape(-1, 3, 3),
-        state_variables=(state / own_volume[:, :, None]).reshape(-1, n_state),
+        state_variables=(state / own_volume[:, :, None]).reshape(own_volume.size, n_state),
         material=material.ravel(),
     ), is_empty & fill.is_active[:, None]
 

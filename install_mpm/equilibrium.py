@@ -137,6 +137,8 @@ def _elastic_solution(system: _StepSystem, first: np.ndarray, solve: Solve) -> n
     system.materials = soils._replace(model=np.full_like(soils.model, Model.HENCKY_ELASTIC))
     state = system.evaluate(first)
     system.materials = soils
+    if not state.is_admissible:  # a cell is crushed: the step is too long
+        return first
     return first + solve(state.tangent, -state.residual)
 
 

@@ -156,9 +156,10 @@ def locate(points: MaterialPoints, mesh: BackgroundMesh) -> int:
 
     Return how many had to be brought back from outside the mesh.
     """
-    status = np.zeros(len(points.cell), dtype=np.int64)
+    status, before = np.zeros(len(points.cell), dtype=np.int64), points.position.copy()
     locate_points(
         mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours, points.position, points.cell,
         points.reference_coordinates, status, np.empty(3),
     )  # fmt: skip
+    points.displacement[:] += points.position - before
     return int(np.count_nonzero(status == PROJECTED))
