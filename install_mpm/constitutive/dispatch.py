@@ -13,8 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm._jit import jit, parallel_jit, prange
-from install_mpm.constitutive import elastic, von_mises
-from install_mpm.constitutive.parameters import HenckyElastic, SoilParameters, VonMises
+from install_mpm.constitutive import elastic, neo_hookean, von_mises
+from install_mpm.constitutive.parameters import (
+    HenckyElastic,
+    NeoHookean,
+    SoilParameters,
+    VonMises,
+)
 
 
 class Model(IntEnum):
@@ -22,11 +27,20 @@ class Model(IntEnum):
 
     HENCKY_ELASTIC = 0
     VON_MISES = 1
+    NEO_HOOKEAN = 2
 
 
-MODEL_OF = {HenckyElastic: Model.HENCKY_ELASTIC, VonMises: Model.VON_MISES}
-MODULE_OF = {Model.HENCKY_ELASTIC: elastic, Model.VON_MISES: von_mises}
-_ELASTIC, _VON_MISES = int(Model.HENCKY_ELASTIC), int(Model.VON_MISES)
+MODEL_OF = {
+    HenckyElastic: Model.HENCKY_ELASTIC,
+    VonMises: Model.VON_MISES,
+    NeoHookean: Model.NEO_HOOKEAN,
+}
+MODULE_OF = {
+    Model.HENCKY_ELASTIC: elastic,
+    Model.VON_MISES: von_mises,
+    Model.NEO_HOOKEAN: neo_hookean,
+}
+_VON_MISES, _NEO_HOOKEAN = int(Model.VON_MISES), int(Model.NEO_HOOKEAN)
 
 
 class Materials(NamedTuple):
@@ -91,6 +105,10 @@ def update_stress(
         return von_mises.update_stress(
             trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
         )
+    if model == _NEO_HOOKEAN:
+        return neo_hookean.update_stress(
+            trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
+        )
     return elastic.update_stress(
         trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
     )
@@ -98,7 +116,10 @@ def update_stress(
 
 @jit
 def elastic_strain_from_stress(model, stress, parameters, elastic_strain):
-    """Fill the elastic strain (6,) of ``stress`` (6,) in Pa; so far every law is Hencky elastic."""
+    """Fill the elastic strain (6,) of ``stress`` (6,) in Pa."""
+    if model == _NEO_HOOKEAN:
+        neo_hookean.elastic_strain_from_stress(stress, parameters, elastic_strain)
+        return
     elastic.elastic_strain_from_stress(stress, parameters, elastic_strain)
 
 

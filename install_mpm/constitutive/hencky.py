@@ -113,7 +113,7 @@ def spatial_tangent(tangent, stretches_squared, directions, dim, spatial):
 
 @jit
 def is_modelled(k, m, dim):
-    """Return whether a gradient can have a component (k, m): in the plane, or out of it on the diagonal."""
+    """Return whether a gradient can have a component (k, m)."""
     return (k < dim and m < dim) or (k == 2 and m == 2)
 
 

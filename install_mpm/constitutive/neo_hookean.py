@@ -1,4 +1,4 @@
-"""Compressible neo-Hookean solid, elliptic at any stretch where Hencky elasticity is not.
+"""Compressible neo-Hookean solid: elliptic at large stretch, where Hencky elasticity is not.
 
     psi = G/2 (I_1 - 3 - 2 ln J) + lambda/2 (ln J)^2 ,   tau_A = G (exp(2 eps_A) - 1) + lambda tr(eps)
 

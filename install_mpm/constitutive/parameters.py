@@ -27,6 +27,15 @@ class HenckyElastic:
 
 
 @dataclass(frozen=True)
+class NeoHookean:
+    """Isotropic compressible neo-Hookean solid with these moduli at small strain."""
+
+    youngs_modulus: Stiffness
+    poissons_ratio: PoissonsRatio
+    model: Literal["neo_hookean"] = "neo_hookean"
+
+
+@dataclass(frozen=True)
 class VonMises:
     """Undrained clay: Hencky elastic.
 
@@ -43,7 +52,7 @@ class VonMises:
     model: Literal["von_mises"] = "von_mises"
 
 
-SoilParameters = HenckyElastic | VonMises
+SoilParameters = HenckyElastic | NeoHookean | VonMises
 """Every soil law a case can name; ``model`` tells them apart."""
 
 

@@ -1,7 +1,7 @@
 """Force and stiffness blocks of a cell, integration point by integration point.
 
-Notation: gx_a = grad N_a and h_a = N_a / r in the current position, d_a = d ln J / du_a and dbar_a = d ln Jbar / du_a,
-C_ijkl = d tau_ij / d l_kl, l = grad(du).
+Notation: gx_a = grad N_a and h_a = N_a / r in the current position, d_a = d ln J / du_a and
+dbar_a = d ln Jbar / du_a, C_ijkl = d tau_ij / d l_kl, l = grad(du).
 """
 
 from __future__ import annotations

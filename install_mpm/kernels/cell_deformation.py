@@ -86,7 +86,7 @@ def push_gradients(start, increment, jacobian, current):
 
 @jit
 def scale_volume(increment, ratio, n_axes):
-    """Scale ``increment`` (3, 3) in place: its determinant grows by ``ratio``, in ``n_axes`` axes."""
+    """Scale ``increment`` (3, 3) in ``n_axes`` axes so that its determinant grows by ``ratio``."""
     factor = ratio ** (1.0 / n_axes)
     for i in range(n_axes):
         for j in range(3):

@@ -9,7 +9,7 @@ import numpy as np
 from install_mpm._jit import jit
 
 CHUNKS = 64
-"""Cells are shared out in this many chunks, each with its own scratch; results do not depend on it."""
+"""Cells are shared out in chunks, each with its own scratch; results do not depend on how many."""
 
 SMALLEST_VOLUME_RATIO = 0.05
 """A trial that compresses a point beyond this in one step is refused."""

@@ -1,12 +1,13 @@
 """Internal force and stiffness of the cells for a trial displacement increment.
 
-With mean dilatation the deformation of each integration point keeps its shape but takes the volume change of its cell,
+With mean dilatation the deformation of each integration point keeps its shape but takes the volume
+change of its cell,
 
     Jbar = sum(v J) / sum(v) ,   dFbar = (Jbar / J)^(1/n) dF   (n = 2 in plane strain, 3 otherwise),
 
-and the Cauchy stress of dFbar is integrated over the current volume v J (de Souza Neto et al. 1996 with an element
-mean).  The volumetric term adds the energy (h_v/2) v ln(J/Jbar)^2 of *this step only*: it resists the volume modes that
-the mean leaves free and is never stored.
+and the Cauchy stress of dFbar is integrated over the current volume v J (de Souza Neto et al. 1996
+with an element mean).  The volumetric term adds the energy (h_v/2) v ln(J/Jbar)^2 of *this step
+only*: it resists the volume modes that the mean leaves free and is never stored.
 """
 
 from __future__ import annotations
@@ -127,7 +128,7 @@ def _update_point(q, local, mean_ratio, n_axes, points, materials, options, scra
 
 @jit
 def _add_point(q, local, mean_ratio, n_axes, points, options, scratch, force, stiffness, trial):
-    """Store the Cauchy stress of point ``q`` and add its force and stiffness to those of the cell."""
+    """Store the Cauchy stress of point ``q`` and add its force and stiffness to the cell's."""
     ratio = mean_ratio if options.has_mean_dilatation else scratch.jacobian[local]
     total_ratio = points.volume_ratio[q] * ratio if options.is_finite_strain else 1.0
     trial.volume_ratio[q] = ratio

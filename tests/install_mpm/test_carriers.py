@@ -6,7 +6,7 @@ import pytest
 from install_mpm.carriers import cell_geometry, fill_cells, inject, integration_points
 from install_mpm.cells import CellType, reference_cell, sub_region_points
 from install_mpm.constitutive import dispatch
-from install_mpm.conventions import GRAVITY
+from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.ground import geostatic_stress
 from install_mpm.kernels.carry import body_force
 from install_mpm.material_points import MaterialPoints
@@ -49,13 +49,17 @@ def scattered(mesh, ground, rng, per_region=2):
     jitter = rng.uniform(-0.04, 0.04, size=(n_cells, len(coordinates), 2))
     cells = np.repeat(np.arange(n_cells), len(coordinates))
     share = rng.uniform(0.2, 1.0, size=(n_cells, len(coordinates)))
-    volume = share / share.sum(axis=1, keepdims=True) * cell_geometry(mesh, CELL).volume[:, None]
+    volume = (
+        share
+        / share.sum(axis=1, keepdims=True)
+        * cell_geometry(mesh, CELL, Kinematics.PLANE_STRAIN).volume[:, None]
+    )
     return points_at(mesh, ground, cells, (coordinates + jitter).reshape(-1, 2), volume.ravel())
 
 
 def carried(points, mesh, ground):
     """Integration points, fill and geometry."""
-    geometry = cell_geometry(mesh, CELL)
+    geometry = cell_geometry(mesh, CELL, Kinematics.PLANE_STRAIN)
     fill = fill_cells(points, mesh, CELL, geometry, THRESHOLD)
     gradient = geostatic_gradient(ground, 1)
     quadrature, is_empty = integration_points(points, CELL, geometry, fill, gradient)
@@ -97,7 +101,7 @@ def test_constant_fields_are_carried_exactly(mesh, clay_ground, rng):
     points.elastic_log_strain[:] = strain
     points.state_variables[:] = [12e3, 0.3]
     points.volume_ratio[:] = 0.93
-    geometry = cell_geometry(mesh, CELL)
+    geometry = cell_geometry(mesh, CELL, Kinematics.PLANE_STRAIN)
     fill = fill_cells(points, mesh, CELL, geometry, THRESHOLD)
     gradient = geostatic_gradient(clay_ground, 1)
     gradient = gradient._replace(strain=0.0 * gradient.strain)
@@ -217,7 +221,7 @@ def with_holes(mesh, clay_ground, rng):
 
 
 def injected(points, mesh, ground):
-    geometry = cell_geometry(mesh, CELL)
+    geometry = cell_geometry(mesh, CELL, Kinematics.PLANE_STRAIN)
     fill = fill_cells(points, mesh, CELL, geometry, THRESHOLD)
     return inject(points, mesh, CELL, geometry, fill, geostatic_gradient(ground, 1))
 
@@ -289,7 +293,7 @@ def test_empty_surface_cells_get_no_points(mesh, clay_ground, rng):
     points = scattered(mesh, clay_ground, rng)
     points = kept(points, points.position[:, 1] < -1.3)
     enriched = injected(points, mesh, clay_ground)
-    geometry = cell_geometry(mesh, CELL)
+    geometry = cell_geometry(mesh, CELL, Kinematics.PLANE_STRAIN)
     fill = fill_cells(points, mesh, CELL, geometry, THRESHOLD)
     new = enriched.cell[len(points.mass) :]
     assert fill.is_interior[new].all()

@@ -9,8 +9,10 @@ from install_mpm.carriers import cell_geometry
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises
+from install_mpm.conventions import Kinematics
 from install_mpm.integration_points import IntegrationPoints, empty_trial
-from install_mpm.kernels.equilibrium import COLLAPSED, CellOptions, evaluate_cells
+from install_mpm.kernels.cell_records import COLLAPSED, CellOptions
+from install_mpm.kernels.equilibrium import evaluate_cells
 
 MODULUS = 1e3
 SOILS = {"elastic": HenckyElastic(MODULUS, 0.3), "plastic": VonMises(MODULUS, 0.3, 2.0)}
@@ -22,8 +24,15 @@ OPTIONS = {
     "volumetric term": {"mean": True, "volumetric": 200.0},
     "soft": {"soft": 3.0},
     "all terms": {"mean": True, "volumetric": 200.0, "soft": 3.0},
-    "small strain": {"finite": False},
-    "small strain, all terms": {"finite": False, "mean": True, "volumetric": 200.0, "soft": 3.0},
+    "small strain": {"finite": False, "soft": 3.0},
+    "axisymmetric": {"axisymmetric": True},
+    "axisymmetric, all terms": {
+        "axisymmetric": True,
+        "mean": True,
+        "volumetric": 200.0,
+        "soft": 3.0,
+    },
+    "axisymmetric, small strain": {"axisymmetric": True, "finite": False},
 }
 every_option = pytest.mark.parametrize("option", OPTIONS)
 every_soil = pytest.mark.parametrize("soil", SOILS)
@@ -31,13 +40,18 @@ every_soil = pytest.mark.parametrize("soil", SOILS)
 
 @pytest.fixture
 def mesh(make_grid):
-    return make_grid(2, 2, distortion=0.3, width=2.0, depth=1.5)
+    grid = make_grid(2, 2, distortion=0.3, width=2.0, depth=1.5)
+    return grid._replace(nodes=grid.nodes + np.array([0.5, 0.0]))  # away from the axis
 
 
-def integration_points(mesh, rng, soil, *, random_start=True):
+def kinematics_of(options):
+    return Kinematics.AXISYMMETRIC if options.is_axisymmetric else Kinematics.PLANE_STRAIN
+
+
+def integration_points(mesh, rng, soil, *, random_start=True, kinematics=Kinematics.PLANE_STRAIN):
     """Integration points of all cells; volumes, strains and J differ from point to point."""
     cell = reference_cell(CellType.TRI6)
-    geometry = cell_geometry(mesh, cell)
+    geometry = cell_geometry(mesh, cell, kinematics)
     n_cells, n_points = len(mesh.cell_nodes), 3 * len(mesh.cell_nodes)
     strain = rng.normal(size=(n_points, 3, 3)) * (0.01 if random_start else 0.0)
     strain = (strain + strain.transpose(0, 2, 1)) / 2.0
@@ -45,7 +59,8 @@ def integration_points(mesh, rng, soil, *, random_start=True):
         cell_start=np.arange(n_cells + 1) * 3,
         reference_coordinates=np.tile(cell.integration_coordinates, (n_cells, 1)),
         shape_gradients=geometry.shape_gradients.reshape(n_points, 6, 2),
-        volume=np.repeat(geometry.volume / 3.0, 3)
+        hoop_gradients=geometry.hoop_gradients.reshape(n_points, 6),
+        volume=geometry.integration_volume.ravel()
         * (rng.uniform(0.5, 1.0, n_points) if random_start else 1.0),
         density=np.ones(n_points),
         volume_ratio=rng.uniform(0.9, 1.1, n_points) if random_start else np.ones(n_points),
@@ -55,8 +70,10 @@ def integration_points(mesh, rng, soil, *, random_start=True):
     )
 
 
-def cell_options(n_cells, *, finite=True, mean=False, volumetric=0.0, soft=0.0):
-    return CellOptions(finite, mean, np.full(n_cells, volumetric), np.full(n_cells, soft))
+def cell_options(n_cells, *, finite=True, mean=False, axisymmetric=False, volumetric=0.0, soft=0.0):
+    return CellOptions(
+        finite, mean, axisymmetric, np.full(n_cells, volumetric), np.full(n_cells, soft)
+    )
 
 
 def evaluate(mesh, points, soil, displacement, options, is_active=None):
@@ -93,20 +110,23 @@ def reference_cell_force(c, mesh, points, soil, displacement, options):
     """Force on the nodes of cell ``c``, straight from the equations of the method."""
     own = slice(points.cell_start[c], points.cell_start[c + 1])
     gradients, volume = points.shape_gradients[own], points.volume[own]
+    hoop, n_axes = points.hoop_gradients[own], 3 if options.is_axisymmetric else 2
     nodal = displacement[mesh.cell_nodes[c]]
     increments = np.tile(np.eye(3), (3, 1, 1))
     increments[:, :2, :2] += np.einsum("ai,qaj->qij", nodal, gradients)
+    increments[:, 2, 2] += hoop @ nodal[:, 0]
     soft = options.soft_stiffness[c] * np.einsum("qaj,qbj,bi->ai", gradients, gradients, nodal)
     if not options.is_finite_strain:
         small = (increments + increments.transpose(0, 2, 1)) / 2.0 - np.eye(3)
         stress = [kirchhoff_stress(soil, e) for e in points.elastic_log_strain[own] + small]
-        return np.einsum("q,qij,qaj->ai", volume, np.array(stress)[:, :2, :2], gradients) + soft
+        force = np.einsum("q,qij,qaj->ai", volume, np.array(stress)[:, :2, :2], gradients) + soft
+        force[:, 0] += np.einsum("q,q,qa->a", volume, np.array(stress)[:, 2, 2], hoop)
+        return force
     ratio = np.linalg.det(increments)
     mean_ratio = volume @ ratio / volume.sum() if options.has_mean_dilatation else ratio
     scaled = increments.copy()
-    scaled[:, :2] *= (
-        np.sqrt(mean_ratio / ratio)[:, None, None] if options.has_mean_dilatation else 1
-    )
+    scaled[:, :n_axes] *= ((mean_ratio / ratio) ** (1.0 / n_axes))[:, None, None]
+    current_hoop = hoop / increments[:, 2, 2, None]
     current = np.einsum("qaj,qji->qai", gradients, np.linalg.inv(increments)[:, :2, :2])
     total_ratio = points.volume_ratio[own] * mean_ratio * np.ones(3)
     force = soft
@@ -115,18 +135,21 @@ def reference_cell_force(c, mesh, points, soil, displacement, options):
         pushed = scaled[q] @ of_tensor(np.exp, 2.0 * strain) @ scaled[q].T
         stress = kirchhoff_stress(soil, of_tensor(np.log, pushed) / 2.0) / total_ratio[q]
         force = force + volume[q] * ratio[q] * current[q] @ stress[:2, :2]
+        force[:, 0] += volume[q] * ratio[q] * stress[2, 2] * current_hoop[q]
     if options.has_mean_dilatation:
-        mean = np.einsum("q,qai->ai", volume * ratio, current) / (volume @ ratio)
+        divergence = current.copy()
+        divergence[:, :, 0] += current_hoop
+        mean = np.einsum("q,qai->ai", volume * ratio, divergence) / (volume @ ratio)
         pressure = options.volumetric_term[c] * volume * np.log(ratio / mean_ratio)
-        force = force + np.einsum("q,qai->ai", pressure, current - mean)
+        force = force + np.einsum("q,qai->ai", pressure, divergence - mean)
     return force
 
 
 @every_option
 @every_soil
 def test_force_equals_plain_arithmetic(option, soil, mesh, rng):
-    points = integration_points(mesh, rng, SOILS[soil])
     options = cell_options(len(mesh.cell_nodes), **OPTIONS[option])
+    points = integration_points(mesh, rng, SOILS[soil], kinematics=kinematics_of(options))
     displacement = 0.03 * rng.normal(size=mesh.nodes.shape)
     result = evaluate(mesh, points, SOILS[soil], displacement, options)
     assert not result.trial.status.any()
@@ -138,8 +161,8 @@ def test_force_equals_plain_arithmetic(option, soil, mesh, rng):
 @every_option
 @every_soil
 def test_stiffness_is_the_derivative_of_the_force(option, soil, mesh, rng):
-    points = integration_points(mesh, rng, SOILS[soil])
     options = cell_options(len(mesh.cell_nodes), **OPTIONS[option])
+    points = integration_points(mesh, rng, SOILS[soil], kinematics=kinematics_of(options))
     displacement = 0.03 * rng.normal(size=mesh.nodes.shape)
     result = evaluate(mesh, points, SOILS[soil], displacement, options)
     assert not result.trial.status.any()

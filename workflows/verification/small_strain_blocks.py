@@ -93,7 +93,7 @@ def _filled_cells(
     vertical_stress: float,
 ) -> tuple[IntegrationPoints, CellFill]:
     """Return the integration points of full cells under a uniform vertical stress."""
-    geometry = cell_geometry(mesh, model.cell)
+    geometry = cell_geometry(mesh, model.cell, model.kinematics)
     n_cells, n_per_cell = geometry.integration_height.shape
     n_points = n_cells * n_per_cell
     stress = np.zeros((n_points, 3, 3))
@@ -102,7 +102,8 @@ def _filled_cells(
         cell_start=np.arange(n_cells + 1) * n_per_cell,
         reference_coordinates=np.tile(model.cell.integration_coordinates, (n_cells, 1)),
         shape_gradients=geometry.shape_gradients.reshape(n_points, 4, 2),
-        volume=np.outer(geometry.volume, model.cell.volume_shares).ravel(),
+        hoop_gradients=geometry.hoop_gradients.reshape(n_points, 4),
+        volume=geometry.integration_volume.ravel(),
         density=np.full(n_points, unit_weight / GRAVITY),
         volume_ratio=np.ones(n_points),
         elastic_log_strain=elastic_strain_of(soil, stress),
