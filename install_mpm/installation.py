@@ -32,6 +32,9 @@ from install_mpm.step import StepResult, step
 ON_BOUNDARY = 1e-9
 """Distance in m within which a node counts as lying on a side of the box."""
 
+GEOSTATIC_RESIDUAL = 1e-8
+"""Largest relative out-of-balance force of undisturbed ground; round-off leaves about 1e-12."""
+
 STEPS_BEFORE_GROWTH = 4
 """Steps that must converge after a cut before the step is doubled again."""
 
@@ -92,7 +95,8 @@ def install(
     Raises
     ------
     NotConvergedError
-        If a step does not converge after ``numerics.max_cuts`` halvings.
+        If a step does not converge after ``numerics.max_cuts`` halvings, or the undisturbed ground
+        is not in equilibrium.
     """
     if resume_from is None:
         mesh = generate_background_mesh(pile, box, mesh_options)
@@ -102,6 +106,7 @@ def install(
     if resume_from is None:
         state = _geostatic_state(problem, mesh, mesh_options.points_per_direction, case_text)
         state, accepted = _advance(problem, state, 0.0)
+        _check_start(state, accepted)
         observe(state, _progress(problem, state))
     else:
         state = resume_from
@@ -174,6 +179,21 @@ def _geostatic_state(
     )
 
 
+def _check_start(state: InstalledState, accepted: bool) -> None:
+    """Check that the first step had nothing to do.
+
+    Raises
+    ------
+    NotConvergedError
+        If the geostatic stress was not in equilibrium.
+    """
+    if not accepted or state.history.residual_history[0, 0] > GEOSTATIC_RESIDUAL:
+        raise NotConvergedError(
+            "installation: the undisturbed ground is not in equilibrium, because its K0 stress "
+            "exceeds its strength; use ground.k0 nearer to 1 or a stronger soil"
+        )
+
+
 def _next_step(problem: Installation, state: InstalledState) -> float:
     """Return the advance of the next step in m: the current step size, or what is left."""
     left = problem.programme.penetration - float(state.pile.penetration)
@@ -209,14 +229,14 @@ def _advance(
         gradient=problem.gradient,
     )
     if not result.is_converged:
-        return state._replace(control=_cut(problem, state, penetration, result)), False
+        return state._replace(control=_cut(problem, state, advance, result)), False
     return _accept(problem, state, advance, result), True
 
 
 def _cut(
-    problem: Installation, state: InstalledState, penetration: float, result: StepResult
+    problem: Installation, state: InstalledState, advance: float, result: StepResult
 ) -> StepControl:
-    """Return the control for a second try with half the step.
+    """Return the control for a second try with half the ``advance`` in m that failed.
 
     Raises
     ------
@@ -225,6 +245,7 @@ def _cut(
     """
     control = state.control
     if int(control.cuts) >= problem.numerics.max_cuts:
+        penetration = float(state.pile.penetration) + advance
         raise NotConvergedError(
             f"installation: the step to penetration {penetration:.4f} m does not converge after "
             f"{int(control.cuts)} halvings (last relative residual "
@@ -232,10 +253,10 @@ def _cut(
             "or a finer background mesh"
         )
     return control._replace(
-        step=control.step / 2.0,
+        step=np.array(advance / 2.0),
         cuts=control.cuts + 1,
         steps_since_cut=np.array(0),
-        displacement_per_step=control.displacement_per_step / 2.0,
+        displacement_per_step=control.displacement_per_step * (advance / 2.0 / control.step),
     )
 
 
