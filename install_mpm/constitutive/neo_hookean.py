@@ -2,7 +2,7 @@
 
     psi = G/2 (I_1 - 3 - 2 ln J) + lambda/2 (ln J)^2 ,   tau_A = G (exp(2 eps_A) - 1) + lambda tr(eps)
 
-written in the principal logarithmic strains eps_A, so that it goes through the same interface.
+written in the principal logarithmic strains eps_A: it goes through the same interface.
 """
 
 from __future__ import annotations
@@ -78,14 +78,21 @@ def elastic_strain_from_stress(stress, parameters, elastic_strain):
     from_mandel(stress, tensor)
     symmetric_eigen(tensor, values, vectors)
     total = (values[0] + values[1] + values[2]) / (3.0 * parameters[BULK])
+    # exp(2 eps_A) = 1 + (tau_A - lambda tr) / G has to stay positive
+    largest = (shear + min(values[0], values[1], values[2])) / first_lame if first_lame else 1e300
     for _ in range(MAX_ITERATIONS):
+        if total >= largest:
+            total = largest - 0.1 * abs(largest)
         excess, slope = -total, -1.0
         for a in range(3):
             squared = 1.0 + (values[a] - first_lame * total) / shear
             excess += 0.5 * np.log(squared)
             slope -= 0.5 * first_lame / (shear * squared)
+        previous = total
         total -= excess / slope
-        if abs(excess) < 1e-15:
+        if total >= largest:
+            total = 0.5 * (previous + largest)
+        elif abs(excess) < 1e-15:
             break
     for component in range(6):
         i, j = ROW[component], COLUMN[component]

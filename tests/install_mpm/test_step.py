@@ -7,6 +7,7 @@ import pytest
 
 from install_mpm.assembly import sparsity_pattern
 from install_mpm.carriers import cell_geometry, fill_cells
+from install_mpm.conventions import Kinematics
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises
@@ -332,7 +333,7 @@ def test_points_take_the_displacement_of_their_cell(mesh, scattered, rng):
     n_cells = len(mesh.cell_nodes)
     displacement = 0.01 * rng.normal(size=mesh.nodes.shape)
     ratio = rng.uniform(0.95, 1.05, n_cells)
-    geometry = cell_geometry(mesh, CELL)
+    geometry = cell_geometry(mesh, CELL, Kinematics.PLANE_STRAIN)
     fill = fill_cells(points, mesh, CELL, geometry, 0.3)
     equilibrium = SimpleNamespace(
         displacement=displacement, trial=SimpleNamespace(cell_volume_ratio=ratio)
@@ -356,7 +357,7 @@ def test_points_take_the_displacement_of_their_cell(mesh, scattered, rng):
 def test_collapsed_points_are_not_sound(mesh, scattered):
     column = Column(mesh, GROUNDS["elastic"])
     points = scattered(column)
-    fill = fill_cells(points, mesh, CELL, cell_geometry(mesh, CELL), 0.3)
+    fill = fill_cells(points, mesh, CELL, cell_geometry(mesh, CELL, Kinematics.PLANE_STRAIN), 0.3)
     displacement = np.zeros_like(mesh.nodes)
     displacement[mesh.cell_nodes[4, 0]] = 3.0
     trial = SimpleNamespace(cell_volume_ratio=np.ones(len(mesh.cell_nodes)))
