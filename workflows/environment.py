@@ -22,6 +22,7 @@ def prepare() -> None:
         "NUMBA_NUM_THREADS": str(threads),
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "HWLOC_HIDE_ERRORS": "2",  # it reports a missing /sys of containers, which is harmless
         "MPLBACKEND": "Agg",
     }
     transport = MPI_TRANSPORT.get(_debian_release())

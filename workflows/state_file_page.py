@@ -12,7 +12,7 @@ from types import ModuleType
 
 from handoff import fe_state_file
 from install_mpm import state_file
-from install_mpm.constitutive.dispatch import MODEL_OF, MODULE_OF
+from install_mpm.constitutive.dispatch import MODULE_OF
 from install_mpm.conventions import CONVENTIONS
 from install_mpm.record import describe
 from service_fe import result_file
@@ -41,9 +41,9 @@ def state_file_page() -> str:
 def _state_variables() -> str:
     """Return one line for each soil law."""
     lines = []
-    for parameters, model in MODEL_OF.items():
+    for model in MODULE_OF:
         names = (f"`{name}`" for name in MODULE_OF[model].STATE_VARIABLES)
-        lines.append(f"- `{parameters.model}`: {', '.join(names) or 'none'}")
+        lines.append(f"- `{model.name.lower()}`: {', '.join(names) or 'none'}")
     return "\n".join(lines)
 
 

@@ -1,7 +1,8 @@
-"""PA11 and PA12: two blocks and one interface element (paper, Fig. 9), closed form c L + N tan(phi).
+"""PA11 and PA12: two blocks and one interface element (paper, Fig. 9).
 
-Claimed: the force follows the springs in series and then the Mohr-Coulomb strength to 1e-8, for the
-paper's data and for others; Newton needs at most three iterations after the first slip.
+The closed form is c L + N tan(phi).  Claimed: the force follows the springs in series and then the
+Mohr-Coulomb strength to 1e-8, for the paper's data and for others; Newton needs at most three
+iterations after the first slip.
 """
 
 import numpy as np

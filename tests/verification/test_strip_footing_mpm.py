@@ -1,7 +1,8 @@
 """PB1: rough rigid strip footing on weightless clay through the installation step, N_c = 2 + pi.
 
-Claimed: quadratic cells with element-mean dilatation reach a flat plateau, from above, with an error
-that falls with the size of the cells at the footing's edge and is below 3 % on the finer mesh.
+Claimed: quadratic cells with element-mean dilatation reach a flat plateau, from above, with an
+error that falls with the size of the cells at the footing's edge and is below 3 % on the finer
+mesh.
 """
 
 import numpy as np
