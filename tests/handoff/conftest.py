@@ -102,7 +102,7 @@ def installed_state(
     points: MaterialPoints, interface: InterfacePoints, tip_depth: float = TIP_DEPTH
 ) -> InstalledState:
     """An installed state of which only what the hand-over reads is filled."""
-    normal_force = interface.traction * (interface.area * interface.is_active)[:, None]
+    normal_force = interface.traction * (interface.area * interface.covered)[:, None]
     upward = -(
         normal_force[:, 1] * interface.normal[:, 1] + normal_force[:, 0] * interface.normal[:, 0]
     )
