@@ -41,7 +41,7 @@ def transferred_traction(
     traction = geostatic_traction(ground, targets, surface_normals(target_parts))
     for part, axis in COORDINATE.items():
         here, there = points.part == part, target_parts == part
-        active = here & (points.is_active == 1)
+        active = here & (points.covered > 0.0)
         if not active.any():
             raise ValueError(
                 f"no soil touches the {part.name.lower()} of the installed pile;"

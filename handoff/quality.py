@@ -202,9 +202,9 @@ def _equilibrium_figures(evidence: Evidence) -> dict[str, Figure]:
 def _reaction_figures(evidence: Evidence) -> dict[str, Figure]:
     points, problem = evidence.installed.interface, evidence.problem
     geometry = problem.interface_normals, problem.interface_areas, problem.interface_parts
-    active_area = points.area * points.is_active
+    covered_area = points.area * points.covered
     forces = {
-        "mpm": pile_forces(points.traction, points.normal, active_area, points.part),
+        "mpm": pile_forces(points.traction, points.normal, covered_area, points.part),
         "transferred": pile_forces(evidence.transferred.interface_traction, *geometry),
         "equilibrated": pile_forces(evidence.balanced.interface_traction, *geometry),
     }

@@ -212,8 +212,8 @@ class _StepSystem:
             self.options, self.cell_force, self.cell_stiffness, self.trial,
         )  # fmt: skip
         evaluate_interface(
-            self.model.elements.nodes, self.model.elements.shape_values, self.interface.is_active,
-            self.interface.area, self.interface.parameters, self.interface.traction, self.mid_frame,
-            self.end_frame, self.pile_displacement, nodal, self.element_force,
-            self.element_stiffness, self.traction,
+            self.model.elements.nodes, self.model.elements.shape_values,
+            self.interface.area * self.interface.covered, self.interface.parameters,
+            self.interface.traction, self.mid_frame, self.end_frame, self.pile_displacement,
+            nodal, self.element_force, self.element_stiffness, self.traction,
         )  # fmt: skip

@@ -55,8 +55,8 @@ class InterfacePoints(NamedTuple):
         ),
     ]
     part: Annotated[np.ndarray, Field(("interface_point",), "", "PilePart", "int64")]
-    is_active: Annotated[
-        np.ndarray, Field(("interface_point",), "", "1 where soil lies beside it, else 0", "int64")
+    covered: Annotated[
+        np.ndarray, Field(("interface_point",), "", "share of the area that soil covers, 0: off")
     ]
 
 
@@ -79,7 +79,7 @@ def no_interface(dim: int) -> tuple[InterfaceElements, InterfacePoints]:
     elements = InterfaceElements(no_nodes, no_index, *facet_rule(3, 3))
     vectors = np.zeros((0, dim))
     points = InterfacePoints(
-        vectors, vectors, np.zeros(0), vectors, np.zeros((0, 5)), no_index, no_index
+        vectors, vectors, np.zeros(0), vectors, np.zeros((0, 5)), no_index, np.zeros(0)
     )
     return elements, points
 
@@ -111,5 +111,5 @@ def reaction(points: InterfacePoints, selected: np.ndarray | None = None) -> np.
 
     On ``selected`` points or all.
     """
-    force = -global_traction(points) * points.area[:, None]
+    force = -global_traction(points) * (points.area * points.covered)[:, None]
     return np.asarray(force.sum(axis=0) if selected is None else force[selected].sum(axis=0))

@@ -72,7 +72,7 @@ def initial_interface(
         traction=geostatic_traction(ground, position, normal),
         parameters=coulomb_interface.pack(law, undrained_shear_strength(ground, position[:, -1])),
         part=part,
-        is_active=(position[:, -1] < 0.0).astype(np.int64),
+        covered=(position[:, -1] < 0.0).astype(np.float64),
     )
 
 

@@ -83,7 +83,7 @@ def read_record(group: h5py.Group, record_type: type[Record]) -> Record:
 def _read_field(group: h5py.Group, name: str, field: Field, extents: dict[str, int]) -> np.ndarray:
     place = f"{group.file.filename}: dataset {group.name}/{name}"
     remedy = "write the file again with the stage that makes it"
-    if name not in group:
+    if not isinstance(group.get(name), h5py.Dataset):
         raise StateFileError(f"{place} is missing; {remedy}")
     try:
         array = group[name][()]

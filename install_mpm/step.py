@@ -118,13 +118,11 @@ def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation)
     elements = model.elements
     ends = elements.nodes[:, : min(2, elements.nodes.shape[1])]
     covered = np.minimum(fill.vertex_fill[ends].min(axis=1, initial=1.0) / LEVEL_FILL, 1.0)
-    is_beside_soil = fill.is_active[elements.cell] & (covered > 0.0)
-    n_points = len(elements.weights)
-    is_active = np.repeat(is_beside_soil, n_points)
+    covered = np.repeat(
+        np.where(fill.is_active[elements.cell], covered, 0.0), len(elements.weights)
+    )
     return interface._replace(
-        is_active=is_active.astype(np.int64),
-        area=interface.area * np.repeat(np.where(is_beside_soil, covered, 0.0), n_points),
-        traction=np.where(is_active[:, None], interface.traction, 0.0),
+        covered=covered, traction=np.where(covered[:, None] > 0.0, interface.traction, 0.0)
     )
 
 

@@ -55,8 +55,8 @@ def page_html(results: Results, parts: list[Section]) -> str:
 
 def _subtitle(results: Results) -> str:
     """Return the installation in one sentence."""
-    case, pile = results.case, results.installed.pile
-    return (
-        f"A pile of {shown(2.0 * case.pile.half_width, 'm', 2)} width, jacked from "
-        f"{shown(case.pile.embedment, 'm', 3)} to {shown(float(pile.tip_depth), 'm', 3)} depth."
-    )
+    pile, tip_depth = results.case.pile, float(results.installed.pile.tip_depth)
+    width, depth = shown(2.0 * pile.half_width, "m", 3), shown(tip_depth, "m", 3)
+    if float(results.installed.pile.penetration) == 0.0:
+        return f"A pile {width} wide at {depth} depth, not moved."
+    return f"A pile {width} wide, jacked from {shown(pile.embedment, 'm', 3)} to {depth} depth."

@@ -89,5 +89,5 @@ def tractions(installed: InstalledState, handed_off: HandedOffState) -> Figure:
 
 def _active(points: InterfacePoints, part: PilePart, axis: int) -> tuple[np.ndarray, np.ndarray]:
     """Return coordinate (n,) and traction (n, 2) of the points of ``part`` beside soil."""
-    chosen = (points.part == part) & (points.is_active == 1)
+    chosen = (points.part == part) & (points.covered > 0.0)
     return points.position[chosen, axis], points.traction[chosen]

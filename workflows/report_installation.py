@@ -129,7 +129,7 @@ def force_against_depth(case: Case, history: History) -> Figure:
         (history.shaft_force, WISHED, "shaft"),
     ):
         here.plot(force / 1e3, penetration, color=colour, label=label)
-    here.set_ylim(max(float(penetration[-1]), 1.0), 0.0)
+    here.set_ylim(float(penetration[-1]), 0.0)
     here.set_xlim(left=min(0.0, float(history.crowd_force.min()) / 1e3))
     here.set_xlabel("force on the whole pile (kN/m)")
     here.set_ylabel("penetration (mm)")

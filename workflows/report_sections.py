@@ -86,10 +86,12 @@ def captioned(name: str, picture: Figure) -> str:
 
 
 def installation_html(results: Results) -> str:
-    """Return the pictures of the installation."""
+    """Return the pictures of the installation; a pile that was not moved has no force."""
     case, installed = results.case, results.installed
-    pictures = {
-        "force": report_installation.force_against_depth(case, installed.history),
+    pictures = {}
+    if float(installed.pile.penetration) > 0.0:
+        pictures["force"] = report_installation.force_against_depth(case, installed.history)
+    pictures |= {
         "points": report_installation.mesh_and_points(case, installed),
         "stress": report_installation.stresses(case, installed),
     }

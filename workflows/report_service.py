@@ -127,7 +127,8 @@ def continuity(case: Case, installed: InstalledState, service: ServiceResult) ->
     band = here.fill_between([0.0, reach], 0.9 * force, 1.1 * force, color=MUTED, alpha=0.25)
     band.set(linewidth=0.0, label="±10 % of the last installation force")
     here.set_xlim(-4.0 * reach, 1.1 * reach)
-    here.set_ylim(0.0, 1.3 * float(history.crowd_force.max()) / 1e3)
+    loads = [history.crowd_force, *(result.curve.head_load for result in pushed)]
+    here.set_ylim(0.0, 1.3 * max(float(load.max()) for load in loads) / 1e3)
     here.set(xlabel="displacement since the end of jacking (mm)", ylabel="force (kN/m)")
     here.legend(loc="lower left")
     grid(here)

@@ -13,7 +13,7 @@ from install_mpm.constitutive.coulomb_interface import update_traction
 
 @jit
 def evaluate_interface(
-    nodes, shape_values, is_active, area, parameters, traction_old, mid_frame, end_frame,
+    nodes, shape_values, area, parameters, traction_old, mid_frame, end_frame,
     pile_displacement, displacement, force, stiffness, traction,
 ):  # fmt: skip
     """Fill ``force`` (n_elements, n_nodes, dim).
@@ -37,7 +37,7 @@ def evaluate_interface(
         for local in range(n_points_per_element):
             q = e * n_points_per_element + local
             traction[q] = 0.0
-            if is_active[q] == 0:
+            if area[q] == 0.0:
                 continue
             for a in range(n_nodes):
                 sign = -1.0 if a < n_facet_nodes else 1.0

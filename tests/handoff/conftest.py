@@ -86,15 +86,15 @@ def interface_points(site: Site, per_part: int = 30) -> InterfacePoints:
     )
     normal = surface_normals(part)
     area = np.where(part == 0, site.pile.half_width / len(base), length / len(shaft))
-    is_active = (position[:, 1] < 0.0).astype(np.int64)
+    covered = (position[:, 1] < 0.0).astype(np.float64)
     return InterfacePoints(
         position=position,
         normal=normal,
         area=area,
-        traction=geostatic_traction(site.ground, position, normal) * is_active[:, None],
+        traction=geostatic_traction(site.ground, position, normal) * covered[:, None],
         parameters=coulomb_interface.pack(site.interface, np.full(len(part), STRENGTH)),
         part=part,
-        is_active=is_active,
+        covered=covered,
     )
 
 
@@ -102,7 +102,7 @@ def installed_state(
     points: MaterialPoints, interface: InterfacePoints, tip_depth: float = TIP_DEPTH
 ) -> InstalledState:
     """An installed state of which only what the hand-over reads is filled."""
-    normal_force = interface.traction * (interface.area * interface.is_active)[:, None]
+    normal_force = interface.traction * (interface.area * interface.covered)[:, None]
     upward = -(
         normal_force[:, 1] * interface.normal[:, 1] + normal_force[:, 0] * interface.normal[:, 0]
     )

@@ -50,7 +50,7 @@ def test_balanced_stress_needs_little_equilibration(run, undisturbed, site):
         np.einsum("ni,ni->n", traction, axes)
         for axes in (tangent_of(interface.normal), interface.normal)
     ]
-    extra_traction = np.column_stack(local) * interface.is_active[:, None]
+    extra_traction = np.column_stack(local) * interface.covered[:, None]
     _, certificate = run(
         undisturbed._replace(
             material_points=points._replace(kirchhoff_stress=points.kirchhoff_stress + extra),

@@ -30,12 +30,12 @@ def test_resultant_of_each_part_is_kept(site, build, surface):
     extra = np.column_stack(
         [np.where(x < 0.5, 0.0, 10e3 * (z < -1.0)), np.where(z < -1.999, -40e3 * (1 + x**2), 0.0)]
     )
-    points = points._replace(traction=points.traction + extra * points.is_active[:, None])
+    points = points._replace(traction=points.traction + extra * points.covered[:, None])
     traction = transferred_traction(
         site.ground, points, surface.positions, surface.areas, surface.parts
     )
     before = pile_forces(
-        points.traction, points.normal, points.area * points.is_active, points.part
+        points.traction, points.normal, points.area * points.covered, points.part
     )
     after = pile_forces(traction, surface.normals, surface.areas, surface.parts)
     for part in PilePart:
@@ -53,11 +53,11 @@ def test_reaction_is_upward_under_pressure_and_pulling_down_soil(site):
 def test_lost_contact_inside_a_part_takes_the_difference_of_its_neighbours(site, build, surface):
     points = build.interface(site)
     lost = np.flatnonzero(points.part == PilePart.SHAFT)[20:23]
-    traction, is_active = points.traction.copy(), points.is_active.copy()
-    traction[lost], is_active[lost] = 0.0, 0
+    traction, covered = points.traction.copy(), points.covered.copy()
+    traction[lost], covered[lost] = 0.0, 0.0
     result = transferred_traction(
         site.ground,
-        points._replace(traction=traction, is_active=is_active),
+        points._replace(traction=traction, covered=covered),
         surface.positions,
         surface.areas,
         surface.parts,
@@ -68,6 +68,6 @@ def test_lost_contact_inside_a_part_takes_the_difference_of_its_neighbours(site,
 
 def test_base_without_contact_is_named(site, build, surface):
     points = build.interface(site)
-    points = points._replace(is_active=points.is_active * (points.part == PilePart.SHAFT))
+    points = points._replace(covered=points.covered * (points.part == PilePart.SHAFT))
     with pytest.raises(ValueError, match="no soil touches the base"):
         transferred_traction(site.ground, points, surface.positions, surface.areas, surface.parts)

@@ -6,11 +6,20 @@ import numba
 import numpy as np
 import pytest
 
+from install_mpm.assembly import sparsity_pattern
 from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
+from install_mpm.cells import CellType, reference_cell
+from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises
-from install_mpm.ground import Ground
-from install_mpm.options import BackgroundMeshOptions, Box
-from install_mpm.pile import Pile
+from install_mpm.equilibrium import Discretisation, Prescribed
+from install_mpm.ground import Ground, geostatic_stress
+from install_mpm.interface import no_interface
+from install_mpm.linear_solvers import superlu
+from install_mpm.material_points import MaterialPoints
+from install_mpm.options import BackgroundMeshOptions, Box, Numerics
+from install_mpm.pile import Pile, PileMotion
+from install_mpm.seeding import elastic_strain_of, geostatic_gradient, seed_points
+from install_mpm.step import StepResult, step
 
 Builder = Callable[..., BackgroundMesh]
 
@@ -134,3 +143,89 @@ def mandel_vectors(tensors: np.ndarray) -> np.ndarray:
 @pytest.fixture(scope="session")
 def vectors_of() -> Callable[[np.ndarray], np.ndarray]:
     return mandel_vectors
+
+
+class Column:
+    """A box of soil on rollers, without pile: x in (0, width), z in (-depth, 0)."""
+
+    cell = reference_cell(CellType.TRI6)
+
+    def __init__(self, mesh: BackgroundMesh, ground: Ground, tolerance: float = 1e-9) -> None:
+        elements, self.interface = no_interface(2)
+        pattern = sparsity_pattern([mesh.cell_nodes, elements.nodes], len(mesh.nodes), 2)
+        self.mesh, self.ground = mesh, ground
+        self.model = Discretisation(
+            self.cell,
+            elements,
+            dispatch.pack([ground.soil]),
+            pattern,
+            superlu(pattern),
+            Numerics(tolerance=tolerance),
+        )
+        x, z = mesh.reference_nodes.T
+        self.width, self.depth = x.max(), -z.min()
+        self.supports = np.zeros(mesh.nodes.shape, dtype=bool)
+        self.supports[:, 0] = (x < 1e-9) | (x > self.width - 1e-9)
+        self.supports[:, 1] = z < 1e-9 - self.depth
+        self.gradient = geostatic_gradient(ground, 1)
+
+    def points(self) -> MaterialPoints:
+        """Twelve points in each cell."""
+        return seed_points(self.mesh, self.cell, self.ground, 2)
+
+    def scattered_points(self, rng: np.random.Generator) -> MaterialPoints:
+        """The same, shaken within their cells; they get their geostatic state."""
+        points = self.points()
+        shift = rng.uniform(-0.03, 0.03, points.reference_coordinates.shape)
+        coordinates = points.reference_coordinates + shift
+        corners = self.mesh.nodes[self.mesh.cell_nodes[points.cell, :3]]
+        shares = np.column_stack([1.0 - coordinates.sum(axis=1), coordinates])
+        position = np.einsum("pv,pvi->pi", shares, corners)
+        stress = geostatic_stress(self.ground, position[:, 1], 1)
+        return points._replace(
+            position=position,
+            reference_coordinates=coordinates,
+            kirchhoff_stress=stress,
+            elastic_log_strain=elastic_strain_of(self.ground.soil, stress),
+            state_variables=dispatch.initial_state(self.ground.soil, -position[:, 1]),
+        )
+
+    def step(
+        self,
+        points: MaterialPoints,
+        mesh: BackgroundMesh,
+        prescribed: Prescribed | None = None,
+        move_mesh: Callable[[BackgroundMesh], BackgroundMesh] = lambda mesh: mesh,
+        start: np.ndarray | None = None,
+    ) -> StepResult:
+        """One step under gravity and prescribed displacements."""
+        at_rest = np.zeros_like(mesh.nodes)
+        return step(
+            points, mesh, self.interface, PileMotion(np.zeros(2)),
+            prescribed or Prescribed(self.supports, at_rest), at_rest if start is None else start,
+            move_mesh, self.model, self.gradient,
+        )  # fmt: skip
+
+    def squeeze(self, mesh: BackgroundMesh, share: float):
+        """Prescribed motion of the top by ``share`` of the height, and the mesh that follows it."""
+        is_prescribed = self.supports.copy()
+        on_top = np.abs(mesh.nodes[:, 1] - mesh.nodes[:, 1].max()) < 1e-9
+        is_prescribed[on_top, 1] = True
+        settlement = share * (mesh.nodes[:, 1] + self.depth)
+        displacement = np.zeros_like(mesh.nodes)
+        displacement[:, 1] = np.where(on_top, -settlement, 0.0)
+
+        def follow(mesh: BackgroundMesh) -> BackgroundMesh:
+            return mesh._replace(nodes=mesh.nodes - np.outer(settlement, [0.0, 1.0]))
+
+        return Prescribed(is_prescribed, displacement), follow
+
+
+@pytest.fixture(scope="session")
+def make_column(make_grid) -> Callable[..., Column]:
+    """Function that returns a column 1.5 m wide and 3 m high of a given ground."""
+
+    def make(ground: Ground, **options: float) -> Column:
+        return Column(make_grid(3, 6, width=1.5, depth=3.0, distortion=0.2), ground, **options)
+
+    return make

@@ -41,12 +41,12 @@ def interface(request, facet_nodes, rng):
     normal = np.column_stack([np.cos(angle), np.sin(angle)])
     traction = rng.normal(size=(n, 2)) * 3.0
     traction[:, 1] = -np.abs(traction[:, 1]) * 20.0
-    is_active = np.ones(n, dtype=np.int64)
-    is_active[4] = 0
+    covered = np.ones(n)
+    covered[4] = 0.0
     return SimpleNamespace(
         nodes=nodes,
         shape_values=shape_values,
-        is_active=is_active,
+        covered=covered,
         area=np.tile(weights, N_ELEMENTS) * rng.uniform(0.5, 2.0, n),
         traction=traction,
         mid_frame=frames(normal, 0.1),
@@ -61,7 +61,7 @@ def evaluate(interface, law, displacement):
     traction = np.empty_like(interface.traction)
     parameters = coulomb_interface.pack(law, np.zeros(len(traction)))
     evaluate_interface(
-        interface.nodes, interface.shape_values, interface.is_active, interface.area, parameters,
+        interface.nodes, interface.shape_values, interface.area * interface.covered, parameters,
         interface.traction, interface.mid_frame, interface.end_frame, interface.pile_displacement,
         displacement, force, stiffness, traction,
     )  # fmt: skip
@@ -94,7 +94,7 @@ def test_force_is_the_traction_on_both_sides(state, interface, rng):
     )  # fmt: skip
     if state in ("stick", "slip"):
         assert (status == {"stick": 0, "slip": 1}[state]).all()
-    expected[interface.is_active == 0] = 0.0
+    expected[interface.covered == 0.0] = 0.0
     np.testing.assert_allclose(result.traction, expected, atol=1e-10 * np.abs(expected).max())
     on_pile = np.einsum("q,qki,qk->qi", interface.area, interface.end_frame, expected).reshape(
         N_ELEMENTS, N_POINTS, 2
@@ -130,7 +130,7 @@ def test_only_the_relative_motion_counts(interface, rng):
     is_rigid = interface.nodes.shape[1] == n_facet
     interface.pile_displacement = np.tile(shift if is_rigid else 0.0 * shift, (9, 1))
     traction = evaluate(interface, law, together).traction
-    expected = np.where(interface.is_active[:, None], interface.traction, 0.0)
+    expected = np.where(interface.covered[:, None] > 0.0, interface.traction, 0.0)
     np.testing.assert_allclose(traction, expected, atol=1e-9)
 
 
@@ -165,7 +165,7 @@ def test_rigid_motion_turns_about_the_origin_then_translates(rng):
 
 
 def test_reaction_is_minus_the_traction_on_the_soil():
-    """Compressed shaft and base: the soil pushes the pile inwards and up."""
+    """Compressed shaft and half-covered base: the soil pushes the pile inwards and up."""
     points = InterfacePoints(
         position=np.zeros((2, 2)),
         normal=np.array([[-1.0, 0.0], [0.0, 1.0]]),
@@ -173,8 +173,8 @@ def test_reaction_is_minus_the_traction_on_the_soil():
         traction=np.array([[0.0, -10.0], [0.0, -4.0]]),
         parameters=np.zeros((2, 5)),
         part=np.array([1, 0]),
-        is_active=np.ones(2, dtype=np.int64),
+        covered=np.array([1.0, 0.5]),
     )
     np.testing.assert_allclose(global_traction(points), [[10.0, 0.0], [0.0, -4.0]])
-    np.testing.assert_allclose(reaction(points), [-20.0, 12.0])
-    np.testing.assert_allclose(reaction(points, points.part == 0), [0.0, 12.0])
+    np.testing.assert_allclose(reaction(points), [-20.0, 6.0])
+    np.testing.assert_allclose(reaction(points, points.part == 0), [0.0, 6.0])

@@ -23,7 +23,8 @@ from workflows.report_fields import (
     window_of,
 )
 from workflows.report_html import Cell, figure, table
-from workflows.report_service import plastic_shear
+from workflows.report_sections import installation_html
+from workflows.report_service import continuity, plastic_shear
 from workflows.report_style import INK, panels, styled, svg_of
 from workflows.report_tables import certificate_table
 from workflows.report_units import plain, shown, significant
@@ -257,6 +258,21 @@ def test_each_integration_point_lies_in_its_part_of_the_cell(results):
         - (parts[:, :, 1] * np.roll(parts, -1, axis=1)[:, :, 0]).sum(axis=1)
     )
     np.testing.assert_allclose(area, results.handed_off.integration.volume, rtol=1e-9)
+
+
+def test_a_pile_that_was_not_moved_has_no_force_and_no_continuity(results):
+    installed = results.installed
+    at_rest = results._replace(
+        installed=installed._replace(
+            pile=installed.pile._replace(penetration=np.array(0.0)),
+            history=type(installed.history)(*(field[:1] for field in installed.history)),
+        )
+    )
+    with styled():
+        html = installation_html(at_rest)
+        assert continuity(at_rest.case, at_rest.installed, at_rest.service) is None
+    assert 'id="points"' in html
+    assert 'id="force"' not in html
 
 
 def test_measures_of_stress(results):

@@ -137,7 +137,7 @@ def _interface(ends: np.ndarray, parameters: np.ndarray, vertical_stress: float)
         traction=np.tile([0.0, vertical_stress], (2, 1)),
         parameters=np.tile(parameters, (2, 1)),
         part=np.zeros(2, dtype=np.int64),
-        is_active=np.ones(2, dtype=np.int64),
+        covered=np.ones(2),
     )
 
 

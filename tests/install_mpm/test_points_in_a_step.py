@@ -1,0 +1,171 @@
+"""What a step does to the material points, against plain arithmetic; which pile facets count."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from install_mpm.carriers import cell_geometry, fill_cells
+from install_mpm.cells import CellType, reference_cell
+from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.material_points import MaterialPoints
+from install_mpm.mesh_generation import generate_background_mesh
+from install_mpm.pile_surface import initial_interface, pile_elements
+from install_mpm.seeding import seed_points
+from install_mpm.step import LEVEL_FILL, carry, locate, switch_on
+
+
+def with_log_of(tensor):
+    values, vectors = np.linalg.eigh(tensor)
+    return vectors @ np.diag(np.log(values)) @ vectors.T
+
+
+def with_exp_of(tensor):
+    values, vectors = np.linalg.eigh(tensor)
+    return vectors @ np.diag(np.exp(values)) @ vectors.T
+
+
+def reference_trial_strains(points, mesh, displacement, ratio, slope):
+    """Trial strains: own dF with the cell's volume change, then one pressure per cell."""
+    strains, volume = np.empty_like(points.elastic_log_strain), points.volume * ratio[points.cell]
+    position = np.empty_like(points.position)
+    for p, c in enumerate(points.cell):
+        nodes = mesh.cell_nodes[c]
+        corners = mesh.nodes[nodes[:3]]
+        affine = np.column_stack([corners[1] - corners[0], corners[2] - corners[0]])
+        x, y = points.reference_coordinates[p]
+        z = 1.0 - x - y
+        values = [
+            z * (2 * z - 1),
+            x * (2 * x - 1),
+            y * (2 * y - 1),
+            4 * z * x,
+            4 * x * y,
+            4 * y * z,
+        ]
+        by_x = [1 - 4 * z, 4 * x - 1, 0.0, 4 * (z - x), 4 * y, -4 * y]
+        by_y = [1 - 4 * z, 0.0, 4 * y - 1, -4 * x, 4 * x, 4 * (z - y)]
+        gradients = np.column_stack([by_x, by_y]) @ np.linalg.inv(affine)
+        increment = np.eye(3)
+        increment[:2, :2] += displacement[nodes].T @ gradients
+        increment[:2] *= np.sqrt(ratio[c] / np.linalg.det(increment))
+        pushed = increment @ with_exp_of(2.0 * points.elastic_log_strain[p]) @ increment.T
+        strains[p] = with_log_of(pushed) / 2.0
+        position[p] = points.position[p] + np.array(values) @ displacement[nodes]
+    for c in np.unique(points.cell):
+        own = points.cell == c
+        weight = volume[own] / volume[own].sum()
+        trace = np.trace(strains[own], axis1=1, axis2=2)
+        rise = position[own, 1] - weight @ position[own, 1]
+        correction = weight @ trace + slope * rise - trace
+        strains[own] += correction[:, None, None] * np.eye(3) / 3.0
+    return strains, position, volume
+
+
+def test_points_take_the_displacement_of_their_cell(make_column, elastic_ground, rng):
+    """Against plain arithmetic, for an arbitrary displacement of all nodes."""
+    column = make_column(elastic_ground)
+    mesh = column.mesh
+    points = column.scattered_points(rng)
+    n_cells = len(mesh.cell_nodes)
+    displacement = 0.01 * rng.normal(size=mesh.nodes.shape)
+    ratio = rng.uniform(0.95, 1.05, n_cells)
+    geometry = cell_geometry(mesh, column.cell)
+    fill = fill_cells(points, mesh, column.cell, geometry, 0.3)
+    equilibrium = SimpleNamespace(
+        displacement=displacement, trial=SimpleNamespace(cell_volume_ratio=ratio)
+    )
+    updated, is_sound = carry(points, mesh, fill, equilibrium, column.model, column.gradient)
+    assert is_sound
+    slope = np.trace(column.gradient.strain[0])
+    strain, position, volume = reference_trial_strains(points, mesh, displacement, ratio, slope)
+    np.testing.assert_allclose(updated.elastic_log_strain, strain, atol=1e-14)
+    np.testing.assert_allclose(updated.position, position, atol=1e-15)
+    np.testing.assert_allclose(updated.displacement, position - points.position, atol=1e-15)
+    np.testing.assert_allclose(updated.volume, volume, rtol=1e-14)
+    np.testing.assert_allclose(updated.volume_ratio, ratio[points.cell], rtol=1e-14)
+    np.testing.assert_array_equal(updated.mass, points.mass)
+    bulk = 5e6 / (3.0 * 0.4)
+    pressure = bulk * np.trace(strain, axis1=1, axis2=2)
+    mean_stress = np.trace(updated.kirchhoff_stress, axis1=1, axis2=2) / 3.0
+    np.testing.assert_allclose(mean_stress, pressure, atol=1e-7)
+
+
+def test_collapsed_points_are_not_sound(make_column, elastic_ground, rng):
+    column = make_column(elastic_ground)
+    mesh = column.mesh
+    points = column.scattered_points(rng)
+    fill = fill_cells(points, mesh, column.cell, cell_geometry(mesh, column.cell), 0.3)
+    displacement = np.zeros_like(mesh.nodes)
+    displacement[mesh.cell_nodes[4, 0]] = 3.0
+    trial = SimpleNamespace(cell_volume_ratio=np.ones(len(mesh.cell_nodes)))
+    equilibrium = SimpleNamespace(displacement=displacement, trial=trial)
+    assert not carry(points, mesh, fill, equilibrium, column.model, column.gradient)[1]
+
+
+def test_displacement_leads_from_the_start_to_the_place_of_a_point(
+    make_column, elastic_ground, rng
+):
+    """Also where a point was brought back from outside: the hand-over finds its start by it."""
+    column = make_column(elastic_ground)
+    mesh = column.mesh
+    points = column.scattered_points(rng)
+    start = points.position - points.displacement
+    lowered = mesh._replace(nodes=mesh.nodes * [1.0, 1.1] - [0.0, 0.05])
+    n_projected = locate(points, lowered)
+    is_outside = start[:, 1] > -0.05
+    assert n_projected == is_outside.sum() > 0
+    np.testing.assert_allclose(points.position - points.displacement, start, atol=1e-15)
+
+
+@pytest.fixture(scope="module")
+def beside_pile(pile, box, mesh_options, clay_ground):
+    """Mesh, points, interface elements and interface of a pile wished in place."""
+    mesh = generate_background_mesh(pile, box, mesh_options)
+    elements, parts = pile_elements(mesh, pile)
+    law = CoulombInterface(2e8, 2e7, adhesion_factor=0.5)
+    return SimpleNamespace(
+        mesh=mesh,
+        elements=elements,
+        interface=initial_interface(elements, parts, mesh, clay_ground, law),
+        points=seed_points(mesh, reference_cell(CellType.TRI6), clay_ground, 2),
+    )
+
+
+def switched(site, points):
+    cell = reference_cell(CellType.TRI6)
+    fill = fill_cells(points, site.mesh, cell, cell_geometry(site.mesh, cell), 0.3)
+    result = switch_on(site.interface, fill, SimpleNamespace(elements=site.elements))
+    return result, fill
+
+
+@pytest.mark.gmsh
+def test_level_ground_covers_the_whole_buried_pile(beside_pile):
+    result, _ = switched(beside_pile, beside_pile.points)
+    for name, expected in beside_pile.interface._asdict().items():
+        np.testing.assert_array_equal(getattr(result, name), expected)
+    is_buried = beside_pile.interface.position[:, 1] < 0.0
+    np.testing.assert_array_equal(result.covered, is_buried)
+
+
+@pytest.mark.gmsh
+def test_facets_count_with_the_share_that_soil_covers(beside_pile):
+    """Soil taken away above -0.55 m: facets above drop out, one at the level counts less."""
+    points = beside_pile.points
+    is_left = points.position[:, 1] < -0.55
+    points = MaterialPoints(*(field[is_left] for field in points))
+    result, fill = switched(beside_pile, points)
+    ends = beside_pile.elements.nodes[:, :2]
+    for e, cell in enumerate(beside_pile.elements.cell):
+        own = slice(3 * e, 3 * e + 3)
+        covered = min(1.0, fill.vertex_fill[ends[e]].min() / LEVEL_FILL)
+        is_active = covered > 0.0 and (points.cell == cell).any()
+        assert ((result.covered[own] > 0.0) == is_active).all()
+        np.testing.assert_allclose(result.covered[own], covered * is_active, rtol=1e-14)
+        traction = beside_pile.interface.traction[own] * is_active
+        np.testing.assert_array_equal(result.traction[own], traction)
+    height = beside_pile.interface.position[:, 1]
+    assert (result.covered > 0.0)[height < -0.8].all()
+    assert not result.covered[height > -0.2].any()
+    np.testing.assert_array_equal(result.area, beside_pile.interface.area)
+    assert ((result.covered > 0.0) & (result.covered < 1.0)).any()
