@@ -6,14 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from install_mpm.assembly import SparsityPattern
 from install_mpm.background_mesh import BackgroundMesh
-from install_mpm.cells import ReferenceCell
 from install_mpm.constitutive.dispatch import Materials, Model
 from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.conventions import GRAVITY, Kinematics
+from install_mpm.discretisation import Discretisation
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
-from install_mpm.interface import InterfaceElements, InterfacePoints, frames
+from install_mpm.interface import InterfacePoints, frames
 from install_mpm.kernels.carry import body_force
 from install_mpm.kernels.cell_records import CellOptions
 from install_mpm.kernels.equilibrium import evaluate_cells
@@ -21,22 +20,7 @@ from install_mpm.kernels.interface_force import evaluate_interface
 from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
 from install_mpm.linear_solvers import Solve
 from install_mpm.newton import Evaluation, NewtonResult, solve_newton
-from install_mpm.options import Numerics
 from install_mpm.pile import PileMotion, rigid_displacement
-
-
-class Discretisation(NamedTuple):
-    """What stays the same in every step of a run."""
-
-    cell: ReferenceCell
-    elements: InterfaceElements
-    materials: Materials
-    pattern: SparsityPattern
-    solve: Solve
-    numerics: Numerics
-    kinematics: Kinematics = Kinematics.PLANE_STRAIN
-    has_mean_dilatation: bool = True
-    is_finite_strain: bool = True
 
 
 class Prescribed(NamedTuple):
@@ -74,9 +58,11 @@ def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisatio
 
     Volumetric term and soft partly filled cells.
     """
-    n_per_cell = len(model.cell.reference_volumes)
-    modulus = youngs_modulus(model.materials)[points.material[points.cell_start[:-1]]]
-    counted = np.add.reduceat(points.volume, points.cell_start[:-1]) / fill.cell_volume
+    n_cells, n_per_cell = len(fill.cell_volume), np.diff(points.cell_start)
+    first = np.minimum(points.cell_start[:-1], len(points.material) - 1)
+    modulus = youngs_modulus(model.materials)[points.material[first]]
+    cell = np.repeat(np.arange(n_cells), n_per_cell)
+    counted = np.bincount(cell, points.volume, n_cells) / fill.cell_volume
     missing = np.maximum(1.0 - counted, 0.0)  # of the volume, not of the points: they may crowd
     return CellOptions(
         is_finite_strain=model.is_finite_strain,
@@ -87,7 +73,7 @@ def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisatio
         * modulus
         * missing
         * fill.cell_volume
-        / n_per_cell,
+        / np.maximum(n_per_cell, 1),
     )
 
 

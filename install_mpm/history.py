@@ -44,6 +44,9 @@ class History(NamedTuple):
     injected_points: Annotated[
         np.ndarray, _per_step("", "material points made by splitting", "int64")
     ]
+    merged_points: Annotated[
+        np.ndarray, _per_step("", "material points that were merged into others", "int64")
+    ]
     projected_points: Annotated[
         np.ndarray, _per_step("", "material points brought back from outside the mesh", "int64")
     ]

@@ -10,12 +10,12 @@ import numpy as np
 from install_mpm import pile_surface
 from install_mpm.assembly import sparsity_pattern
 from install_mpm.background_mesh import BackgroundMesh, cell_quality
-from install_mpm.carriers import GeostaticGradient
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
-from install_mpm.equilibrium import Discretisation, Prescribed
+from install_mpm.discretisation import Discretisation, GeostaticGradient
+from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground
 from install_mpm.history import append, empty_history
 from install_mpm.interface import reaction

@@ -55,6 +55,8 @@ class Numerics:
     """
     fill_threshold: Share = 0.3
     soft_stiffness: Annotated[float, Ge(0)] = 1e-2
+    most_points_per_cell: Annotated[int, Ge(3)] = 48
+    """Material points are merged in cells that hold more."""
     checkpoint_every: Annotated[int, Ge(1)] = 10
     linear_solver: str = "mumps"
     random_seed: int = 0

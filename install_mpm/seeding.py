@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh
-from install_mpm.carriers import GeostaticGradient
 from install_mpm.cells import ReferenceCell, sub_region_points
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
 from install_mpm.constitutive.parameters import SoilParameters
 from install_mpm.conventions import GRAVITY
+from install_mpm.discretisation import GeostaticGradient
 from install_mpm.ground import Ground, geostatic_stress
 from install_mpm.material_points import MaterialPoints
 

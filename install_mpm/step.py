@@ -13,22 +13,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from install_mpm import carriers, quadrature
 from install_mpm.background_mesh import BackgroundMesh
-from install_mpm.carriers import (
-    GeostaticGradient,
-    cell_geometry,
-    fill_cells,
-    inject,
-    integration_points,
-)
-from install_mpm.conventions import Kinematics
-from install_mpm.equilibrium import Discretisation, Prescribed, StepEquilibrium, find_equilibrium
+from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme, StepStart
+from install_mpm.equilibrium import Prescribed, StepEquilibrium, find_equilibrium
 from install_mpm.integration_points import CellFill
 from install_mpm.interface import InterfacePoints
 from install_mpm.kernels.locate import PROJECTED, locate_points
-from install_mpm.kernels.update import carry_points
 from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import PileMotion
+
+SCHEMES = {Scheme.CARRIERS: carriers, Scheme.QUADRATURE: quadrature}
 
 LEVEL_FILL = 0.4
 """Fill of a vertex from which on the facets below it count as covered.
@@ -44,6 +39,7 @@ class StepCounts(NamedTuple):
     partly_filled_cells: int
     empty_integration_points: int
     injected_points: int
+    merged_points: int
     projected_points: int
 
 
@@ -75,28 +71,20 @@ def step(
     the mesh follows. Nothing that is passed in is changed, so a step that does not converge needs
     no undo.
     """
-    geometry = cell_geometry(mesh, model.cell, model.kinematics)
-    fill = fill_cells(points, mesh, model.cell, geometry, model.numerics.fill_threshold)
-    enriched = inject(points, mesh, model.cell, geometry, fill, gradient)
-    if len(enriched.mass) > len(points.mass):
-        fill = fill_cells(enriched, mesh, model.cell, geometry, model.numerics.fill_threshold)
-    quadrature, is_empty = integration_points(enriched, model.cell, geometry, fill, gradient)
-    interface = switch_on(interface, fill, model)
+    scheme = SCHEMES[model.scheme]
+    given = scheme.give_state(points, mesh, model, gradient)
+    interface = switch_on(interface, given.fill, model)
 
     equilibrium = find_equilibrium(
-        mesh, quadrature, fill, interface, motion, prescribed, start, model
+        mesh, given.quadrature, given.fill, interface, motion, prescribed, start, model
     )
-    counts = StepCounts(
-        empty_cells=int(np.count_nonzero(fill.is_interior & ~fill.is_active)),
-        partly_filled_cells=int(np.count_nonzero(fill.is_active & ~fill.is_interior)),
-        empty_integration_points=int(np.count_nonzero(is_empty)),
-        injected_points=len(enriched.mass) - len(points.mass),
-        projected_points=0,
-    )
+    counts = count(points, given)
     if not equilibrium.newton.is_converged:
         return StepResult(False, equilibrium, points, interface, mesh, counts)
 
-    carried, is_sound = carry(enriched, mesh, fill, equilibrium, model, gradient)
+    carried, is_sound = scheme.take_state(
+        given.points, mesh, given.fill, equilibrium, model, gradient
+    )
     moved_mesh = move_mesh(mesh)
     n_projected = locate(carried, moved_mesh) if is_sound else 0
     return StepResult(
@@ -106,6 +94,19 @@ def step(
         interface._replace(traction=equilibrium.traction),
         moved_mesh,
         counts._replace(projected_points=n_projected),
+    )
+
+
+def count(points: MaterialPoints, given: StepStart) -> StepCounts:
+    """Return the irregularities at the start of a step; ``points`` are those before injection."""
+    is_active, is_interior = given.fill.is_active, given.fill.is_interior
+    return StepCounts(
+        empty_cells=int(np.count_nonzero(is_interior & ~is_active)),
+        partly_filled_cells=int(np.count_nonzero(is_active & ~is_interior)),
+        empty_integration_points=given.n_empty,
+        injected_points=given.n_injected,
+        merged_points=given.n_merged,
+        projected_points=0,
     )
 
 
@@ -124,29 +125,6 @@ def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation)
     return interface._replace(
         covered=covered, traction=np.where(covered[:, None] > 0.0, interface.traction, 0.0)
     )
-
-
-def carry(
-    points: MaterialPoints,
-    mesh: BackgroundMesh,
-    fill: CellFill,
-    equilibrium: StepEquilibrium,
-    model: Discretisation,
-    gradient: GeostaticGradient,
-) -> tuple[MaterialPoints, bool]:
-    """Return the material points after the displacement of the step.
-
-    And whether all of them are sound.
-    """
-    updated = MaterialPoints(*(np.array(field) for field in points))
-    status = np.zeros(len(mesh.cell_nodes), dtype=np.int64)
-    carry_points(
-        model.cell.cell_type, mesh.cell_nodes, mesh.nodes, equilibrium.displacement,
-        equilibrium.trial.cell_volume_ratio, fill.point_order, fill.cell_start, points,
-        model.materials, gradient.strain, model.has_mean_dilatation,
-        model.kinematics == Kinematics.AXISYMMETRIC, updated, status,
-    )  # fmt: skip
-    return updated, not status.any()
 
 
 def locate(points: MaterialPoints, mesh: BackgroundMesh) -> int:

@@ -1,6 +1,7 @@
 """Compressible neo-Hookean solid: elliptic at large stretch, where Hencky elasticity is not.
 
-    psi = G/2 (I_1 - 3 - 2 ln J) + lambda/2 (ln J)^2 ,   tau_A = G (exp(2 eps_A) - 1) + lambda tr(eps)
+    psi = G/2 (I_1 - 3 - 2 ln J) + lambda/2 (ln J)^2 ,   tau_A = G (exp(2 eps_A) - 1) + lambda
+    tr(eps)
 
 written in the principal logarithmic strains eps_A: it goes through the same interface.
 """

@@ -1,4 +1,7 @@
-"""Shape functions and gradients at material points, for the scheme in which they are the quadrature."""
+"""Shape functions and gradients at material points.
+
+For the scheme in which they are the quadrature.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ def point_shapes(
     cell_type, cell_nodes, nodes, is_axisymmetric, cell, reference_coordinates, values, gradients,
     hoop,
 ):  # fmt: skip
-    """Fill shape ``values`` and ``hoop`` gradients (n, n_nodes) and ``gradients`` (n, n_nodes, dim).
+    """Fill shape ``values`` and ``hoop`` (n, n_nodes) and ``gradients`` (n, n_nodes, dim).
 
     ``cell`` (n,) and ``reference_coordinates`` (n, dim) say where the points are.
     """

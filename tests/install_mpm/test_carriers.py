@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
-from install_mpm.carriers import cell_geometry, fill_cells, inject, integration_points
+from install_mpm.carriers import integration_points
+from install_mpm.cell_fill import cell_geometry, fill_cells
 from install_mpm.cells import CellType, reference_cell, sub_region_points
 from install_mpm.constitutive import dispatch
 from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.ground import geostatic_stress
+from install_mpm.injection import inject
 from install_mpm.kernels.carry import body_force
 from install_mpm.material_points import MaterialPoints
 from install_mpm.seeding import elastic_strain_of, geostatic_gradient, seed_points

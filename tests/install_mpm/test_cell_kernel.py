@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from install_mpm.carriers import cell_geometry
+from install_mpm.cell_fill import cell_geometry
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises

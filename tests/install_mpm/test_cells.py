@@ -5,7 +5,7 @@ from math import factorial
 import numpy as np
 import pytest
 
-from install_mpm.carriers import cell_geometry
+from install_mpm.cell_fill import cell_geometry
 from install_mpm.cells import (
     CellType,
     reference_cell,

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from install_mpm import installation
-from install_mpm.carriers import cell_geometry
+from install_mpm.cell_fill import cell_geometry
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic, VonMises
+from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground, geostatic_stress
 from install_mpm.installation import NotConvergedError, install
 from install_mpm.interface import global_traction, reaction
@@ -310,6 +311,8 @@ def test_solvers_agree(run, short):
 
 
 def test_cell_volumes_add_up_to_the_box(short):
-    geometry = cell_geometry(short.state.background_mesh, reference_cell(CellType.TRI6))
+    geometry = cell_geometry(
+        short.state.background_mesh, reference_cell(CellType.TRI6), Kinematics.PLANE_STRAIN
+    )
     assert (geometry.volume > 0.0).all()
     assert geometry.volume.sum() == pytest.approx(4.0 * 5.6 - 0.5 * 2.7, rel=1e-12)

@@ -5,14 +5,16 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from install_mpm.carriers import cell_geometry, fill_cells
+from install_mpm.carriers import take_state
+from install_mpm.cell_fill import cell_geometry, fill_cells
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.conventions import Kinematics
 from install_mpm.material_points import MaterialPoints
 from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.pile_surface import initial_interface, pile_elements
 from install_mpm.seeding import seed_points
-from install_mpm.step import LEVEL_FILL, carry, locate, switch_on
+from install_mpm.step import LEVEL_FILL, locate, switch_on
 
 
 def with_log_of(tensor):
@@ -70,12 +72,12 @@ def test_points_take_the_displacement_of_their_cell(make_column, elastic_ground,
     n_cells = len(mesh.cell_nodes)
     displacement = 0.01 * rng.normal(size=mesh.nodes.shape)
     ratio = rng.uniform(0.95, 1.05, n_cells)
-    geometry = cell_geometry(mesh, column.cell)
+    geometry = cell_geometry(mesh, column.cell, Kinematics.PLANE_STRAIN)
     fill = fill_cells(points, mesh, column.cell, geometry, 0.3)
     equilibrium = SimpleNamespace(
         displacement=displacement, trial=SimpleNamespace(cell_volume_ratio=ratio)
     )
-    updated, is_sound = carry(points, mesh, fill, equilibrium, column.model, column.gradient)
+    updated, is_sound = take_state(points, mesh, fill, equilibrium, column.model, column.gradient)
     assert is_sound
     slope = np.trace(column.gradient.strain[0])
     strain, position, volume = reference_trial_strains(points, mesh, displacement, ratio, slope)
@@ -95,12 +97,14 @@ def test_collapsed_points_are_not_sound(make_column, elastic_ground, rng):
     column = make_column(elastic_ground)
     mesh = column.mesh
     points = column.scattered_points(rng)
-    fill = fill_cells(points, mesh, column.cell, cell_geometry(mesh, column.cell), 0.3)
+    fill = fill_cells(
+        points, mesh, column.cell, cell_geometry(mesh, column.cell, Kinematics.PLANE_STRAIN), 0.3
+    )
     displacement = np.zeros_like(mesh.nodes)
     displacement[mesh.cell_nodes[4, 0]] = 3.0
     trial = SimpleNamespace(cell_volume_ratio=np.ones(len(mesh.cell_nodes)))
     equilibrium = SimpleNamespace(displacement=displacement, trial=trial)
-    assert not carry(points, mesh, fill, equilibrium, column.model, column.gradient)[1]
+    assert not take_state(points, mesh, fill, equilibrium, column.model, column.gradient)[1]
 
 
 def test_displacement_leads_from_the_start_to_the_place_of_a_point(
@@ -134,7 +138,9 @@ def beside_pile(pile, box, mesh_options, clay_ground):
 
 def switched(site, points):
     cell = reference_cell(CellType.TRI6)
-    fill = fill_cells(points, site.mesh, cell, cell_geometry(site.mesh, cell), 0.3)
+    fill = fill_cells(
+        points, site.mesh, cell, cell_geometry(site.mesh, cell, Kinematics.PLANE_STRAIN), 0.3
+    )
     result = switch_on(site.interface, fill, SimpleNamespace(elements=site.elements))
     return result, fill
 

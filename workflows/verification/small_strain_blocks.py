@@ -12,7 +12,7 @@ import numpy as np
 
 from install_mpm.assembly import sparsity_pattern
 from install_mpm.background_mesh import BackgroundMesh
-from install_mpm.carriers import cell_geometry
+from install_mpm.cell_fill import cell_geometry
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic

@@ -1,0 +1,82 @@
+"""Geometry of the background cells at the start of a step, and how full of soil they are."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from install_mpm.background_mesh import BackgroundMesh
+from install_mpm.cells import ReferenceCell
+from install_mpm.conventions import Kinematics
+from install_mpm.integration_points import CellFill
+from install_mpm.kernels import carry
+from install_mpm.kernels import cell_geometry as kernels
+from install_mpm.material_points import MaterialPoints
+
+
+class CellGeometry(NamedTuple):
+    """Geometry of the cells at the start of a step; first axes (n_cells, n_integration_points)."""
+
+    shape_gradients: np.ndarray
+    """(..., n_nodes, dim) in 1/m."""
+    hoop_gradients: np.ndarray
+    """(..., n_nodes) in 1/m, zero unless axisymmetric."""
+    integration_volume: np.ndarray
+    """Volume that belongs to each integration point of a full cell, (...) in m^3."""
+    integration_height: np.ndarray
+    """Height of the integration points, (...) in m."""
+
+    @property
+    def volume(self) -> np.ndarray:
+        """Volume of the cells, (n_cells,) in m^3."""
+        volume: np.ndarray = self.integration_volume.sum(axis=1)
+        return volume
+
+
+def cell_geometry(
+    mesh: BackgroundMesh, cell: ReferenceCell, kinematics: Kinematics
+) -> CellGeometry:
+    """Return shape gradients, volumes and heights of all cells."""
+    shape = (len(mesh.cell_nodes), len(cell.reference_volumes))
+    geometry = CellGeometry(
+        np.empty((*shape, cell.n_nodes, cell.dim)),
+        np.empty((*shape, cell.n_nodes)),
+        np.empty(shape),
+        np.empty(shape),
+    )
+    kernels.cell_geometry(
+        cell.cell_type, mesh.cell_nodes, mesh.nodes, cell.integration_coordinates,
+        cell.reference_volumes, kinematics == Kinematics.AXISYMMETRIC, *geometry,
+    )  # fmt: skip
+    return geometry
+
+
+def fill_cells(
+    points: MaterialPoints,
+    mesh: BackgroundMesh,
+    cell: ReferenceCell,
+    geometry: CellGeometry,
+    threshold: float,
+) -> CellFill:
+    """Return which cells hold points and which of them are interior."""
+    n_cells = len(mesh.cell_nodes)
+    order = np.argsort(points.cell, kind="stable")
+    start = np.searchsorted(points.cell[order], np.arange(n_cells + 1))
+    filled, capacity = np.zeros(len(mesh.nodes)), np.zeros(len(mesh.nodes))
+    carry.vertex_fill(
+        mesh.cell_nodes, cell.n_vertices, cell.integration_coordinates,
+        geometry.integration_volume, order, start, points, filled, capacity,
+    )  # fmt: skip
+    vertex_fill = filled / np.where(capacity > 0.0, capacity, 1.0)
+    vertices = mesh.cell_nodes[:, : cell.n_vertices]
+    volume = np.bincount(points.cell, weights=points.volume, minlength=n_cells)
+    return CellFill(
+        point_order=order,
+        cell_start=start,
+        share=volume / geometry.volume,
+        vertex_fill=vertex_fill,
+        is_active=np.diff(start) > 0,
+        is_interior=(vertex_fill[vertices] > threshold).all(axis=1),
+        cell_volume=geometry.volume,
+    )

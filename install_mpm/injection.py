@@ -1,0 +1,175 @@
+"""Injection of material points where an integration point has none, by splitting.
+
+Conserves mass and volume.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from install_mpm.background_mesh import BackgroundMesh
+from install_mpm.cell_fill import CellGeometry
+from install_mpm.cells import ReferenceCell
+from install_mpm.discretisation import GeostaticGradient
+from install_mpm.integration_points import CellFill
+from install_mpm.material_points import MaterialPoints
+
+
+def inject(
+    points: MaterialPoints,
+    mesh: BackgroundMesh,
+    cell: ReferenceCell,
+    geometry: CellGeometry,
+    fill: CellFill,
+    gradient: GeostaticGradient,
+) -> MaterialPoints:
+    """Return the points with one more at every empty integration point of an interior cell.
+
+    The new point is split off the largest point of the cell, or of a neighbour where the cell is
+    empty: mass and volume are conserved exactly, and the state is moved with the geostatic
+    gradient.
+    """
+    if not fill.is_interior.any():
+        return points
+    occupied = np.zeros(geometry.integration_height.shape, dtype=bool)
+    nearest = _sub_region_of(points, cell)
+    occupied[points.cell, nearest] = True
+    split: list[tuple[int, int, int]] = []
+    volume = points.volume.copy()
+    for c, q in np.argwhere(~occupied & fill.is_interior[:, None]):
+        donors = _points_near(c, fill, mesh)
+        if len(donors) == 0:
+            continue
+        donor = donors[np.argmax(volume[donors])]
+        volume[donor] /= 2.0
+        split.append((donor, c, q))
+    return _split(points, np.array(split, dtype=np.int64).reshape(-1, 3), mesh, cell, gradient)
+
+
+def _sub_region_of(points: MaterialPoints, cell: ReferenceCell) -> np.ndarray:
+    """Return the integration point (n_points,) whose sub-region holds each material point."""
+    difference = points.reference_coordinates[:, None, :] - cell.integration_coordinates
+    distance = (difference**2).sum(axis=2) + difference.sum(axis=2) ** 2
+    nearest: np.ndarray = distance.argmin(axis=1)
+    return nearest
+
+
+def _points_near(c: int, fill: CellFill, mesh: BackgroundMesh) -> np.ndarray:
+    """Return the points of cell ``c``, or of its neighbours if it is empty."""
+    own = fill.point_order[fill.cell_start[c] : fill.cell_start[c + 1]]
+    if len(own):
+        return own
+    neighbours = mesh.cell_neighbours[c]
+    return np.concatenate(
+        [
+            fill.point_order[fill.cell_start[n] : fill.cell_start[n + 1]]
+            for n in neighbours
+            if n >= 0
+        ]
+    )
+
+
+def _split(
+    points: MaterialPoints,
+    split: np.ndarray,
+    mesh: BackgroundMesh,
+    cell: ReferenceCell,
+    gradient: GeostaticGradient,
+) -> MaterialPoints:
+    """Return the points with one more per row (donor, cell, integration point) of ``split``."""
+    if len(split) == 0:
+        return points
+    volume, mass = points.volume.copy(), points.mass.copy()
+    added = {name: [] for name in MaterialPoints._fields}  # type: dict[str, list[np.ndarray]]
+    for donor, c, q in split:
+        volume[donor] /= 2.0
+        mass[donor] /= 2.0
+        xi = cell.integration_coordinates[q]
+        place = _position(mesh, cell, c, xi)
+        rise = place[-1] - points.position[donor, -1]
+        row = points.material[donor]
+        new = {name: getattr(points, name)[donor] for name in MaterialPoints._fields}
+        new |= {
+            "position": place,
+            "reference_coordinates": xi,
+            "cell": c,
+            "volume": volume[donor],
+            "mass": mass[donor],
+            "elastic_log_strain": new["elastic_log_strain"] + rise * gradient.strain[row],
+            "kirchhoff_stress": new["kirchhoff_stress"] + rise * gradient.stress[row],
+        }
+        for name, value in new.items():
+            added[name].append(value)
+    kept = points._replace(volume=volume, mass=mass)
+    return MaterialPoints(
+        *(np.concatenate([getattr(kept, name), np.array(added[name])]) for name in added)
+    )
+
+
+def _position(mesh: BackgroundMesh, cell: ReferenceCell, c: int, xi: np.ndarray) -> np.ndarray:
+    """Return the place of reference coordinates ``xi`` in the straight-edged cell ``c``."""
+    vertices = mesh.nodes[mesh.cell_nodes[c, : cell.n_vertices]]
+    place: np.ndarray = vertices[0] + xi @ (vertices[1:] - vertices[0])
+    return place
+
+
+def merge(
+    points: MaterialPoints, cell: ReferenceCell, fill: CellFill, most_per_cell: int
+) -> MaterialPoints:
+    """Return the points with the nearest pairs of crowded cells merged until none holds too many.
+
+    Only points of the same soil and sub-region are merged.  Mass, volume, initial volume and the
+    volume integrals of displacement, strain, stress and state variables are conserved; the new
+    point lies at the centre of volume.
+    """
+    crowded = np.flatnonzero(np.diff(fill.cell_start) > most_per_cell)
+    if len(crowded) == 0:
+        return points
+    merged = MaterialPoints(*(np.array(field) for field in points))
+    is_left = np.ones(len(points.mass), dtype=bool)
+    region = _sub_region_of(points, cell)
+    for c in crowded:
+        own = fill.point_order[fill.cell_start[c] : fill.cell_start[c + 1]]
+        for _ in range(len(own) - most_per_cell):
+            pair = _nearest_pair(merged, own[is_left[own]], region)
+            if pair is None:
+                break
+            _merge_pair(merged, *pair)
+            is_left[pair[1]] = False
+    return MaterialPoints(*(field[is_left] for field in merged))
+
+
+def _nearest_pair(
+    points: MaterialPoints, own: np.ndarray, region: np.ndarray
+) -> tuple[int, int] | None:
+    """Return the two nearest points of ``own`` of the same soil and sub-region.
+
+    If there are any.
+    """
+    place = points.position[own]
+    distance = np.linalg.norm(place[:, None] - place, axis=2)
+    kind = np.column_stack([points.material[own], region[own]])
+    differs = (kind[:, None] != kind).any(axis=2)
+    distance[differs | np.tri(len(own), dtype=bool)] = np.inf
+    first, second = np.unravel_index(np.argmin(distance), distance.shape)
+    if not np.isfinite(distance[first, second]):
+        return None
+    return int(own[first]), int(own[second])
+
+
+def _merge_pair(points: MaterialPoints, kept: int, gone: int) -> None:
+    """Put the point ``gone`` into ``kept``, in place."""
+    pair = [kept, gone]
+    volume = points.volume[pair]
+    share = volume / volume.sum()
+    initial_volume = volume / points.volume_ratio[pair]
+    cauchy = points.kirchhoff_stress[pair] / points.volume_ratio[pair, None, None]
+    ratio = volume.sum() / initial_volume.sum()
+    for name in ("position", "displacement", "elastic_log_strain", "state_variables"):
+        field = getattr(points, name)
+        field[kept] = np.tensordot(share, field[pair], axes=1)
+    points.reference_coordinates[kept] = share @ points.reference_coordinates[pair]
+    points.kirchhoff_stress[kept] = ratio * np.tensordot(share, cauchy, axes=1)
+    points.volume_ratio[kept] = ratio
+    points.volume[kept] = volume.sum()
+    points.mass[kept] = points.mass[pair].sum()
