@@ -5,11 +5,11 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from workflows.verification.references.cylindrical_cavity import cylinder_pressure, sphere_pressure
 from workflows.verification.references.mohr_coulomb_cavity import (
     MohrCoulombSoil,
     cavity_pressure,
 )
-from workflows.verification.references.cylindrical_cavity import cylinder_pressure, sphere_pressure
 
 TRESCA = {"shear_modulus": 100.0, "undrained_shear_strength": 1.0}
 
@@ -45,6 +45,13 @@ def test_limits_of_small_and_infinite_expansion():
     assert cylinder_pressure(1.0 + 1e-6, **TRESCA) == pytest.approx(2e-4, rel=1e-5)
     assert sphere_pressure(1.0 + 1e-6, **TRESCA) == pytest.approx(4e-4, rel=1e-5)
     assert cylinder_pressure(1.0, **TRESCA) == 0.0
+
+
+def test_contraction_is_refused():
+    with pytest.raises(ValueError, match="must be at least 1"):
+        cylinder_pressure([1.0, 0.9], **TRESCA)
+    with pytest.raises(ValueError, match="must be at least 1"):
+        cavity_pressure(0.9, soil(30, 0), is_sphere=True)
 
 
 def soil(friction, dilation, **changes):

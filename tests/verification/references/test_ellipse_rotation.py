@@ -30,6 +30,11 @@ def test_circle_is_the_annulus():
     assert result.stiffness == pytest.approx(annulus, rel=1e-12)
 
 
+def test_ellipse_outside_the_disc_is_refused():
+    with pytest.raises(ValueError, match="does not lie in the circle"):
+        ellipse_rotation(**ELLIPSE, outer_radius=1.9, poissons_ratio=0.3)
+
+
 def test_large_disc_is_the_infinite_medium():
     # 1/T tends to its limit with 1/R^2
     limit = 1.0 / infinite_medium_stiffness(**ELLIPSE, poissons_ratio=0.3)

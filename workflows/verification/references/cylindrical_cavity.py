@@ -37,6 +37,11 @@ def cylinder_pressure(
         In Pa.
     outer_ratio
         Original radius of the outer boundary over a_0; the pressure there is constant.
+
+    Raises
+    ------
+    ValueError
+        If the cavity has become smaller.
     """
     return _pressure(expansion, 2, shear_modulus, undrained_shear_strength, outer_ratio)
 
@@ -60,6 +65,8 @@ def _pressure(
     expansion: ArrayLike, n: int, shear_modulus: float, strength: float, outer_ratio: float
 ) -> np.ndarray:
     """Return I(t_inner) - I(t_outer)."""
+    if np.any(np.asarray(expansion) < 1.0):
+        raise ValueError(f"cavity expansion {expansion} must be at least 1")
     growth = np.asarray(expansion, dtype=float) ** n - 1.0
     inner = _integral(np.log1p(growth), shear_modulus, strength)
     if np.isinf(outer_ratio):

@@ -61,24 +61,36 @@ def ellipse_rotation(
         In Pa.
     n_terms
         Number of powers in each of the four series.
+
+    Raises
+    ------
+    ValueError
+        If the lengths are not in the order semi_minor <= semi_major < outer_radius.
     """
     p, q = semi_major, semi_minor
-    focus_scale, ratio = 0.5 * (p + q), (p - q) / (p + q)
+    if not 0.0 < q <= p < outer_radius:
+        raise ValueError(f"ellipse {p} x {q} does not lie in the circle of radius {outer_radius}")
+    geometry = 0.5 * (p + q), (p - q) / (p + q), outer_radius
+    leading, error = _collocate(geometry, 3.0 - 4.0 * poissons_ratio, n_terms)
+    shear_modulus = youngs_modulus / (2.0 * (1.0 + poissons_ratio))
+    return EllipseRotation(4.0 * np.pi * shear_modulus * geometry[0] * leading, error / p)
+
+
+def _collocate(
+    geometry: tuple[float, float, float], kappa: float, n_terms: int
+) -> tuple[float, float]:
+    """Return |A| and the largest error for the displacement i z of the ellipse, 2 G = 1."""
+    focus_scale, ratio, outer_radius = geometry
     circle = np.exp(0.5j * np.pi * (np.arange(4 * n_terms) + 0.5) / (4 * n_terms))
-    kappa = 3.0 - 4.0 * poissons_ratio
-    zeta_rim = _outside(outer_radius * circle, focus_scale, ratio)
-    zeta = np.hstack([circle, zeta_rim])
+    zeta = np.hstack([circle, _outside(outer_radius * circle, focus_scale, ratio)])
     z = focus_scale * (zeta + ratio / zeta)
-    columns = _displacements(z, zeta, (focus_scale, ratio, outer_radius), kappa, n_terms)
+    columns = _displacements(z, zeta, geometry, kappa, n_terms)
     wanted = np.hstack([1j * z[: circle.size], np.zeros(circle.size)])
     matrix = np.vstack([columns.real, columns.imag])
     right_side = np.hstack([wanted.real, wanted.imag])
     scale = np.linalg.norm(matrix, axis=0)
     solution = np.linalg.lstsq(matrix / scale, right_side, rcond=1e-14)[0] / scale
-    error = np.abs(matrix @ solution - right_side).max() / p
-    shear_modulus = youngs_modulus / (2.0 * (1.0 + poissons_ratio))
-    leading = abs(solution[2 * n_terms]) * 2.0 * shear_modulus  # A, for a displacement i theta z
-    return EllipseRotation(2.0 * np.pi * focus_scale * leading, error)
+    return abs(solution[2 * n_terms]), np.abs(matrix @ solution - right_side).max()
 
 
 def _outside(z: np.ndarray, focus_scale: float, ratio: float) -> np.ndarray:

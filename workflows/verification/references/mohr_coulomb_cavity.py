@@ -55,8 +55,15 @@ class MohrCoulombSoil:
 def cavity_pressure(expansion: float, soil: MohrCoulombSoil, *, is_sphere: bool) -> float:
     """Return the pressure in Pa of a cavity whose radius is ``expansion`` times the original.
 
-    ``expansion`` is at least 1; infinity gives the limit pressure.
+    Infinite expansion gives the limit pressure.
+
+    Raises
+    ------
+    ValueError
+        If the cavity has become smaller.
     """
+    if expansion < 1.0:
+        raise ValueError(f"cavity expansion {expansion} must be at least 1")
     k = 2 if is_sphere else 1
     strength = soil.y + (soil.alpha - 1.0) * soil.initial_pressure
     excess = k * strength / (k + soil.alpha)  # of sigma_r over p_0 at the radius b

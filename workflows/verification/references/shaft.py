@@ -3,7 +3,7 @@
 Each horizontal slice is sheared by itself: the settlement is w = tau [1 / k_s + (a / G) ln(b / a)]
 with the soil fixed at radius b.  At depth z the interface slips at c + K_0 gamma z tan(delta).
 
-Source: model of concentric cylinders, Fleming et al. (2009), Piling engineering, section 4.2.
+Source: model of concentric cylinders, Fleming et al. (2009), Piling engineering, 3rd edition.
 """
 
 from __future__ import annotations
