@@ -10,7 +10,7 @@ beta lines,  direction theta - pi/4:  dp - 2 d(theta) = -(dr - dz) / r.
 Beta lines leave the free surface (theta = 0, p = 1) at distances up to ``extent`` from the edge
 and run inwards through a fan at the edge.  Under the smooth footing they rise to its base, where
 theta = pi/2; the last must meet the axis.  Under the rough footing they end on the last alpha line
-of the fan, below which a cone of soil sticks to the footing; that line must meet the axis with
+of the fan, above which a cone of soil sticks to the footing; that line must meet the axis with
 theta = pi/2.  The factors are extrapolated from two nets with error O(1/n^2).
 
 Source: Cox, Eason & Hopkins (1961), Phil. Trans. R. Soc. A 254, 1-45 (smooth); Eason & Shield
@@ -20,7 +20,7 @@ Source: Cox, Eason & Hopkins (1961), Phil. Trans. R. Soc. A 254, 1-45 (smooth); 
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq, fsolve
+from scipy.optimize import brentq, root
 
 
 def circular_footing_pressure(
@@ -34,6 +34,11 @@ def circular_footing_pressure(
         In Pa.
     n
         Number of beta lines and of fan lines of the coarse net; the fine one has twice as many.
+
+    Raises
+    ------
+    ArithmeticError
+        If the net of the rough footing is not found.
     """
     factor = _rough_factor if is_rough else _smooth_factor
     return undrained_shear_strength * (4.0 * factor(2 * n) - factor(n)) / 3.0
@@ -54,8 +59,10 @@ def _rough_factor(n: int) -> float:
         end = _cone(unknown[0], unknown[1], n)[:, -1]
         return [end[0], end[3] - 0.5 * np.pi]
 
-    extent, fan = fsolve(mismatch, [0.882, np.deg2rad(116.1)], xtol=1e-9)
-    r, z, p, theta = _cone(extent, fan, n)
+    solution = root(mismatch, [0.882, np.deg2rad(116.1)], tol=1e-9)
+    if not solution.success:
+        raise ArithmeticError(f"no net of {n} lines meets the axis: {solution.message}")
+    r, z, p, theta = _cone(solution.x[0], solution.x[1], n)
     vertical, shear = p - np.cos(2.0 * theta), np.sin(2.0 * theta)
     mean = [0.5 * (field[1:] + field[:-1]) for field in (r, vertical, shear)]
     return np.sum(2.0 * mean[0] * (mean[2] * np.diff(z) - mean[1] * np.diff(r)))
