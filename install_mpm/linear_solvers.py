@@ -7,6 +7,8 @@ general (mean dilatation, non-associated flow, friction), so only LU methods are
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -40,15 +42,12 @@ def mumps(pattern: SparsityPattern) -> Solve:
     )
     solver = PETSc.KSP().create(PETSc.COMM_SELF)
     solver.setType("preonly")
+    solver.setOperators(matrix)
     factorisation = solver.getPC()
     factorisation.setType("lu")
     factorisation.setFactorSolverType("mumps")
-    prefix = f"screwpile_{id(pattern)}_"
-    solver.setOptionsPrefix(prefix)
-    options = PETSc.Options(prefix)
-    # the analysis must not depend on values, or a resumed run would round differently
-    options["mat_mumps_icntl_6"] = 0
-    solver.setFromOptions()
+    prepare = partial(_prepare_mumps, factorisation)
+    prepare()
     solution, load = matrix.createVecs()
 
     def solve(values: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
@@ -60,10 +59,22 @@ def mumps(pattern: SparsityPattern) -> Solve:
         result = np.array(solution.getArray())
         if solver.getConvergedReason() < 0 or not np.isfinite(result).all():
             factorisation.reset()  # PETSc would leave out the factorisation after one that failed
+            solver.setOperators(matrix)
+            prepare()
             raise SingularMatrixError("MUMPS could not factorise the tangent")
         return result
 
     return solve
+
+
+def _prepare_mumps(factorisation: Any) -> None:
+    """Make the analysis of a PETSc LU preconditioner independent of values.
+
+    ICNTL(6) = 0 leaves out the permutation that depends on them; a resumed run, which analyses at
+    another step, would round differently.
+    """
+    factorisation.setFactorSetUpSolverType()
+    factorisation.getFactorMatrix().setMumpsIcntl(6, 0)
 
 
 def superlu(pattern: SparsityPattern) -> Solve:

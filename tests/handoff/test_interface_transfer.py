@@ -34,9 +34,7 @@ def test_resultant_of_each_part_is_kept(site, build, surface):
     traction = transferred_traction(
         site.ground, points, surface.positions, surface.areas, surface.parts
     )
-    before = pile_forces(
-        points.traction, points.normal, points.area * points.covered, points.part
-    )
+    before = pile_forces(points.traction, points.normal, points.area * points.covered, points.part)
     after = pile_forces(traction, surface.normals, surface.areas, surface.parts)
     for part in PilePart:
         assert after[part] == pytest.approx(before[part], rel=2e-3)

@@ -25,7 +25,7 @@ def holders(mesh, point):
     """All cells that hold a point, by solving for barycentric coordinates."""
     corners = mesh.nodes[mesh.cell_nodes[:, :3]]
     edges = np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=2)
-    share = np.linalg.solve(edges, point - corners[:, 0])
+    share = np.linalg.solve(edges, (point - corners[:, 0])[..., None])[..., 0]
     smallest = np.minimum(share.min(axis=1), 1.0 - share.sum(axis=1))
     return np.flatnonzero(smallest > -1e-11)
 

@@ -137,7 +137,7 @@ def test_a_failed_check_is_red_and_announced(results_copy):
 
 def test_passed_checks_are_not_announced(html):
     assert 'class="warning"' not in html
-    assert "FAIL" not in html
+    assert 'class="fail"' not in html
 
 
 @pytest.mark.parametrize("name", NEEDED)

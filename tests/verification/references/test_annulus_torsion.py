@@ -97,6 +97,21 @@ def test_hencky_solution_is_lost_at_a_finite_angle():
         annulus_torsion(np.deg2rad(40.0), energy=hencky, **ANNULUS, poissons_ratio=0.0)
 
 
+def test_turned_back_it_is_the_mirror_image():
+    data = ANNULUS | {"energy": neo_hookean, "poissons_ratio": 0.3}
+    there, back = annulus_torsion(0.5, **data), annulus_torsion(-0.5, **data)
+    assert back.torque == -there.torque
+    np.testing.assert_array_equal(back.twist, -there.twist)
+    np.testing.assert_array_equal(back.radial_displacement, there.radial_displacement)
+
+
+@pytest.mark.parametrize(("outer_radius", "degrees"), [(1.1, 5.0), (60.0, 20.0)])
+def test_thin_and_thick_annulus_are_converged(outer_radius, degrees):
+    data = ANNULUS | {"outer_radius": outer_radius, "energy": hencky, "poissons_ratio": 0.2}
+    torques = [annulus_torsion(np.deg2rad(degrees), **data, degree=n).torque for n in (24, 40)]
+    assert torques[0] == pytest.approx(torques[1], rel=1e-6)
+
+
 @pytest.mark.parametrize("energy", [hencky, neo_hookean])
 def test_derivatives_of_the_energies(energy):
     # Both laws are tested with their Hessians against differences, near and far from no shear.

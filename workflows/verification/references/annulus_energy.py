@@ -62,9 +62,9 @@ def energy_derivatives(
         [[1.0 / slope, 1.0 / r, zero], [2.0 * slope, 2.0 * r * hoop, 2.0 * r**2 * twist]]
     )
     hessian = np.einsum("ab...,ai...,bj...->ij...", second, invariant_by_q, invariant_by_q)
-    hessian[0, 0] += by_invariant[0] * -1.0 / slope**2 + by_invariant[1] * 2.0
-    hessian[1, 1] += by_invariant[0] * -1.0 / r**2 + by_invariant[1] * 2.0 * hoop
-    hessian[1, 2] += by_invariant[1] * 4.0 * r * twist
+    hessian[0, 0] += 2.0 * by_invariant[1] - by_invariant[0] / slope**2
+    hessian[1, 1] += 2.0 * by_invariant[1] * hoop - by_invariant[0] / r**2
+    hessian[1, 2] += 4.0 * by_invariant[1] * r * twist
     hessian[2, 1] = hessian[1, 2]
-    hessian[2, 2] += by_invariant[1] * 2.0 * r**2
+    hessian[2, 2] += 2.0 * by_invariant[1] * r**2
     return np.einsum("a...,ai...->i...", by_invariant, invariant_by_q), hessian

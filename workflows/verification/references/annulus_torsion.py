@@ -66,7 +66,7 @@ def annulus_torsion(
     Parameters
     ----------
     rotation
-        In rad, not negative.
+        In rad.
     energy
         ``hencky`` or ``neo_hookean`` of ``annulus_energy``.
     inner_radius, outer_radius, youngs_modulus
@@ -81,15 +81,16 @@ def annulus_torsion(
     """
     moduli = _moduli(youngs_modulus, poissons_ratio)
     basis = make_basis(inner_radius, outer_radius, degree)
-    unknown, reached = _follow(rotation, basis, energy, moduli)
-    if reached < rotation:
+    unknown, reached = _follow(abs(rotation), basis, energy, moduli)
+    if reached < abs(rotation):
         raise ArithmeticError(
             f"the annulus has no stable solution beyond {np.rad2deg(reached):.2f} degrees"
         )
-    q, phi = basis.fields(unknown, rotation)
+    q, phi = basis.fields(unknown, reached)
     gradient, _ = energy_derivatives(q, basis.radius, energy, moduli)
-    torque = float(np.sum(basis.weight * gradient[2] * basis.lift_slope))
-    return AnnulusTorsion(torque, basis.radius, q[1] - basis.radius, phi)
+    torque = np.sum(basis.weight * gradient[2] * basis.lift_slope)
+    sense = np.sign(rotation)
+    return AnnulusTorsion(sense * torque, basis.radius, q[1] - basis.radius, sense * phi)
 
 
 def largest_rotation(
