@@ -31,3 +31,42 @@ def translate(
     nodes = mesh.reference_nodes.copy()
     nodes[:, -1] = np.interp(nodes[:, -1], levels, moved)
     return straightened(mesh._replace(nodes=nodes))
+
+
+def rotate_clockwise(nodes: np.ndarray, angle: float) -> np.ndarray:
+    """Return ``nodes`` (n, 2) turned about the origin by ``angle`` (rad), clockwise if positive.
+
+    Paper, eqs (3) and (4), as printed: x1 = x0 cos + y0 sin, y1 = -x0 sin + y0 cos.
+    """
+    cosine, sine = np.cos(angle), np.sin(angle)
+    x, y = nodes[:, 0], nodes[:, 1]
+    return np.column_stack([x * cosine + y * sine, -x * sine + y * cosine])
+
+
+def rotate(
+    mesh: BackgroundMesh,
+    angle: float,
+    *,
+    inner_radius: float = np.inf,
+    outer_radius: float = np.inf,
+) -> BackgroundMesh:
+    """Return the mesh with its reference nodes turned about the origin by ``angle`` (rad).
+
+    Anticlockwise if positive, that is by eqs (3) and (4) of the paper with minus ``angle``.  The
+    whole angle applies within ``inner_radius``; it tapers linearly to zero at ``outer_radius``.
+    """
+    nodes = mesh.reference_nodes
+    radius = np.linalg.norm(nodes, axis=1)
+    share = np.ones(len(nodes))
+    if np.isfinite(outer_radius):
+        share = np.clip((outer_radius - radius) / (outer_radius - inner_radius), 0.0, 1.0)
+    turned = np.empty_like(nodes)
+    for value in np.unique(share):
+        own = share == value
+        turned[own] = rotate_clockwise(nodes[own], -angle * value)
+    return straightened(mesh._replace(nodes=turned))
+
+
+def stretch(mesh: BackgroundMesh, factors: tuple[float, float]) -> BackgroundMesh:
+    """Return the mesh with its reference nodes scaled from the origin by ``factors`` per axis."""
+    return straightened(mesh._replace(nodes=mesh.reference_nodes * np.array(factors)))

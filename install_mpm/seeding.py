@@ -9,30 +9,37 @@ from install_mpm.cells import ReferenceCell, sub_region_points
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
 from install_mpm.constitutive.parameters import SoilParameters
-from install_mpm.conventions import GRAVITY
+from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.discretisation import GeostaticGradient
 from install_mpm.ground import Ground, geostatic_stress
 from install_mpm.material_points import MaterialPoints
 
 
 def seed_points(
-    mesh: BackgroundMesh, cell: ReferenceCell, ground: Ground, per_direction: int
+    mesh: BackgroundMesh,
+    cell: ReferenceCell,
+    ground: Ground,
+    per_direction: int,
+    *,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+    is_soil: np.ndarray | None = None,
 ) -> MaterialPoints:
-    """Return the material points of level ground.
+    """Return the material points of level ground with its K0 stress and the strain to match.
 
-    Every cell below z = 0 filled, K0 stress, elastic strain to match.
-
-    The logarithmic strain of the initial stress is referred to the initial configuration, so J = 1
-    at the start.
+    ``is_soil`` (n_cells,) says which cells are filled; by default those below z = 0.  The
+    logarithmic strain of the initial stress is referred to the initial configuration, so J = 1 at
+    the start.
     """
     coordinates, shares = sub_region_points(cell, per_direction)
     vertices = mesh.nodes[mesh.cell_nodes[:, : cell.n_vertices]]
-    cells = np.flatnonzero(vertices[:, :, -1].mean(axis=1) < 0.0)
+    cells = np.flatnonzero(vertices[:, :, -1].mean(axis=1) < 0.0 if is_soil is None else is_soil)
     origin, edges = vertices[cells, 0], vertices[cells, 1:] - vertices[cells, :1]
     position = origin[:, None] + np.einsum("qv,cvi->cqi", coordinates, edges)
     cell_volume = np.abs(np.linalg.det(edges)) / 2.0
     position = position.reshape(-1, cell.dim)
     volume = (cell_volume[:, None] * shares).ravel()
+    if kinematics == Kinematics.AXISYMMETRIC:
+        volume *= 2.0 * np.pi * position[:, 0]
     n_points = len(position)
     stress = geostatic_stress(ground, position[:, -1], cell.dim - 1)
     return MaterialPoints(

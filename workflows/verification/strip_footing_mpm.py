@@ -11,23 +11,14 @@ from __future__ import annotations
 import numpy as np
 
 from handoff.fe_mesh import FEMesh
-from install_mpm.assembly import sparsity_pattern
 from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
-from install_mpm.cells import CellType, reference_cell
-from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import VonMises
-from install_mpm.equilibrium import Discretisation, Prescribed
+from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground
-from install_mpm.interface import no_interface
-from install_mpm.linear_solvers import mumps
 from install_mpm.options import Numerics
-from install_mpm.pile import PileMotion
-from install_mpm.seeding import geostatic_gradient, seed_points
-from install_mpm.step import step
 from service_fe.problem import roller_supports
+from workflows.verification.body import advance, make_body
 from workflows.verification.strip_footing_fe import StripFootingResult, footing_mesh
-
-AT_REST = PileMotion(np.zeros(2))
 
 
 def strip_footing(
@@ -58,29 +49,11 @@ def strip_footing(
     soil = VonMises(
         rigidity_index * undrained_shear_strength, poissons_ratio, undrained_shear_strength
     )
-    ground = Ground(0.0, 1.0, soil)
-    elements, interface = no_interface(mesh.nodes.shape[1])
-    pattern = sparsity_pattern([mesh.cell_nodes, elements.nodes], len(mesh.nodes), 2)
-    model = Discretisation(
-        reference_cell(CellType.TRI6),
-        elements,
-        dispatch.pack([soil]),
-        pattern,
-        mumps(pattern),
-        numerics,
-    )
-    points = seed_points(mesh, model.cell, ground, per_direction=2)
+    body = make_body(mesh, Ground(0.0, 1.0, soil), numerics=numerics)
     prescribed, under_footing = _rough_footing(fe_mesh, mesh, width, settlement * width / steps)
-    gradient = geostatic_gradient(ground, vertical=1)
-    start = np.zeros_like(mesh.nodes)
     loads, histories = [], []
     for number in range(steps):
-        result = step(
-            points, mesh, interface, AT_REST, prescribed, start, lambda same: same, model, gradient
-        )
-        if not result.is_converged:
-            raise RuntimeError(f"strip footing: step {number + 1} of {steps} does not converge")
-        points, start = result.points, result.equilibrium.displacement
+        body, result = advance(body, prescribed, name=f"strip footing, step {number + 1}")
         loads.append(-2.0 * result.equilibrium.reaction[under_footing, 1].sum())
         histories.append(tuple(result.equilibrium.newton.residuals))
     return StripFootingResult(
