@@ -1,0 +1,84 @@
+"""What a reference problem is, and what it returns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Check:
+    """One computed quantity beside its reference."""
+
+    quantity: str
+    """What is compared, in words, with unit."""
+    computed: float
+    reference: float
+    error: float
+    """What is compared with the tolerance: relative unless ``quantity`` says otherwise."""
+    tolerance: float
+
+    @property
+    def is_met(self) -> bool:
+        """Return whether the error lies within the tolerance (a NaN does not)."""
+        return abs(self.error) <= self.tolerance
+
+
+@dataclass(frozen=True)
+class Series:
+    """A curve for the report: computed beside reference over one abscissa."""
+
+    title: str
+    abscissa: str
+    ordinate: str
+    x: tuple[float, ...]
+    computed: tuple[float, ...]
+    reference: tuple[float, ...] = ()
+    is_logarithmic: bool = False
+    """Draw both axes logarithmically: convergence studies."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Result of a reference problem."""
+
+    checks: tuple[Check, ...]
+    series: tuple[Series, ...] = ()
+    remarks: tuple[str, ...] = ()
+    residual_histories: tuple[tuple[float, ...], ...] = field(default=(), repr=False)
+    """Relative Newton residuals of every step, for the statement on convergence."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A named reference problem; ``run`` takes its physical parameters as keywords with defaults.
+
+    The keywords are the symbols of the reference (a, b, E, nu, su, ...), annotated with their SI
+    unit; the reference is evaluated with the same values, so a changed parameter moves both.
+    """
+
+    identifier: str
+    title: str
+    run: Callable[..., Outcome]
+    is_quick: bool
+    """Part of ``screwpile verify --quick``: a few seconds."""
+
+
+def relative(quantity: str, computed: float, reference: float, tolerance: float) -> Check:
+    """Return the check of a relative error."""
+    return Check(quantity, computed, reference, computed / reference - 1.0, tolerance)
+
+
+def absolute(quantity: str, computed: float, reference: float, tolerance: float) -> Check:
+    """Return the check of an absolute difference."""
+    return Check(quantity, computed, reference, computed - reference, tolerance)
+
+
+def at_most(quantity: str, computed: float, bound: float) -> Check:
+    """Return the check that a quantity does not exceed ``bound``."""
+    return Check(quantity, computed, 0.0, computed, bound)
+
+
+def at_least(quantity: str, computed: float, bound: float) -> Check:
+    """Return the check that a quantity, such as an order of convergence, reaches ``bound``."""
+    return Check(quantity, computed, bound, max(bound - computed, 0.0), 0.0)
