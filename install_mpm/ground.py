@@ -8,7 +8,7 @@ from typing import Annotated
 import numpy as np
 from annotated_types import Ge, Gt
 
-from install_mpm.constitutive.parameters import SoilParameters, VonMises
+from install_mpm.constitutive.parameters import SoilParameters, UndrainedClay
 from install_mpm.conventions import Unit
 
 
@@ -41,7 +41,7 @@ def undrained_shear_strength(ground: Ground, height: np.ndarray) -> np.ndarray:
     Zero if it has none.
     """
     soil = ground.soil
-    if not isinstance(soil, VonMises):
+    if not isinstance(soil, UndrainedClay):
         return np.zeros(len(height))
     depth = np.maximum(-height, 0.0)
     return soil.undrained_shear_strength + soil.undrained_shear_strength_gradient * depth

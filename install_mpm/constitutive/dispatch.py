@@ -13,11 +13,13 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm._jit import jit, parallel_jit, prange
-from install_mpm.constitutive import elastic, neo_hookean, von_mises
+from install_mpm.constitutive import elastic, neo_hookean, tresca, von_mises
 from install_mpm.constitutive.parameters import (
     HenckyElastic,
     NeoHookean,
     SoilParameters,
+    Tresca,
+    UndrainedClay,
     VonMises,
 )
 
@@ -28,19 +30,23 @@ class Model(IntEnum):
     HENCKY_ELASTIC = 0
     VON_MISES = 1
     NEO_HOOKEAN = 2
+    TRESCA = 3
 
 
 MODEL_OF = {
     HenckyElastic: Model.HENCKY_ELASTIC,
     VonMises: Model.VON_MISES,
     NeoHookean: Model.NEO_HOOKEAN,
+    Tresca: Model.TRESCA,
 }
 MODULE_OF = {
     Model.HENCKY_ELASTIC: elastic,
     Model.VON_MISES: von_mises,
     Model.NEO_HOOKEAN: neo_hookean,
+    Model.TRESCA: tresca,
 }
 _VON_MISES, _NEO_HOOKEAN = int(Model.VON_MISES), int(Model.NEO_HOOKEAN)
+_TRESCA = int(Model.TRESCA)
 
 
 class Materials(NamedTuple):
@@ -70,7 +76,7 @@ def state_variable_names(soil: SoilParameters) -> tuple[str, ...]:
 
 def initial_state(soil: SoilParameters, depth: np.ndarray) -> np.ndarray:
     """Return the state variables (n, n_state) of undisturbed soil at ``depth`` (n,) in m."""
-    if isinstance(soil, VonMises):
+    if isinstance(soil, UndrainedClay):
         return von_mises.initial_state(soil, depth)
     return np.zeros((len(depth), 0))
 
@@ -109,6 +115,10 @@ def update_stress(
         return neo_hookean.update_stress(
             trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
         )
+    if model == _TRESCA:
+        return tresca.update_stress(
+            trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
+        )
     return elastic.update_stress(
         trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
     )
@@ -128,6 +138,8 @@ def yield_function(model, stress, parameters, state):
     """Return the yield function in Pa at one point; zero or negative is admissible."""
     if model == _VON_MISES:
         return von_mises.yield_function(stress, parameters, state)
+    if model == _TRESCA:
+        return tresca.yield_function(stress, parameters, state)
     return elastic.yield_function(stress, parameters, state)
 
 

@@ -52,7 +52,25 @@ class VonMises:
     model: Literal["von_mises"] = "von_mises"
 
 
-SoilParameters = HenckyElastic | NeoHookean | VonMises
+@dataclass(frozen=True)
+class Tresca:
+    """Undrained clay: Hencky elastic, perfectly plastic at the largest shear stress s_u.
+
+    In plane strain the same as ``VonMises`` but for the stress out of the plane; in other modes,
+    such as triaxial ones, von Mises is the weaker by up to 13 %.
+    """
+
+    youngs_modulus: Stiffness
+    poissons_ratio: PoissonsRatio
+    undrained_shear_strength: Annotated[float, Unit("Pa"), Gt(0)]
+    undrained_shear_strength_gradient: Annotated[float, Unit("Pa/m"), Ge(0)] = 0.0
+    model: Literal["tresca"] = "tresca"
+
+
+UndrainedClay = VonMises | Tresca
+"""Soil laws whose strength is ``undrained_shear_strength``, a state variable."""
+
+SoilParameters = HenckyElastic | NeoHookean | VonMises | Tresca
 """Every soil law a case can name; ``model`` tells them apart."""
 
 

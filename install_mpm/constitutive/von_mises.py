@@ -19,7 +19,7 @@ from install_mpm.constitutive.elastic import (  # the elastic part of the law is
     elastic_tangent,
 )
 from install_mpm.constitutive.mandel import SQRT2, trace
-from install_mpm.constitutive.parameters import VonMises
+from install_mpm.constitutive.parameters import UndrainedClay
 
 STATE_VARIABLES = ("undrained_shear_strength", "plastic_shear_strain")
 """Strength in Pa carried by the material.
@@ -32,7 +32,7 @@ STRENGTH, PLASTIC_SHEAR = 0, 1
 __all__ = ["elastic_strain_from_stress", "initial_state", "pack", "update_stress", "yield_function"]
 
 
-def pack(parameters: VonMises) -> np.ndarray:
+def pack(parameters: UndrainedClay) -> np.ndarray:
     """Return the packed parameters: bulk and shear modulus in Pa.
 
     The strength is a state variable.
@@ -40,7 +40,7 @@ def pack(parameters: VonMises) -> np.ndarray:
     return elastic.pack(parameters)
 
 
-def initial_state(parameters: VonMises, depth: np.ndarray) -> np.ndarray:
+def initial_state(parameters: UndrainedClay, depth: np.ndarray) -> np.ndarray:
     """Return the state variables (n, 2) of material at ``depth`` (n,) in m."""
     strength = (
         parameters.undrained_shear_strength + parameters.undrained_shear_strength_gradient * depth

@@ -1,4 +1,4 @@
-"""What every soil law in ``dispatch`` must satisfy, and the von Mises law in particular."""
+"""What every soil law in ``dispatch`` must satisfy, and the plastic laws in particular."""
 
 from itertools import pairwise
 from types import SimpleNamespace
@@ -7,20 +7,23 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from install_mpm.constitutive import dispatch
+from install_mpm.constitutive import dispatch, tresca
 from install_mpm.constitutive.dispatch import Model
-from install_mpm.constitutive.parameters import HenckyElastic, NeoHookean, VonMises
+from install_mpm.constitutive.parameters import HenckyElastic, NeoHookean, Tresca, VonMises
 
 SOILS = {
     Model.HENCKY_ELASTIC: HenckyElastic(4e6, 0.3),
     Model.VON_MISES: VonMises(4e6, 0.3, 20e3, 2e3),
     Model.NEO_HOOKEAN: NeoHookean(4e6, 0.3),
+    Model.TRESCA: Tresca(4e6, 0.3, 20e3, 2e3),
 }
 SIZES = {"elastic": 1e-3, "plastic": 5e-2, "large": 1.0}
 """Norm of the trial strain; the strength is reached at a shear strain of about 1e-2."""
 
 N_STATES = 40
 every_model = pytest.mark.parametrize("model", list(Model), ids=lambda model: model.name)
+CLAYS = [Model.VON_MISES, Model.TRESCA]
+every_clay = pytest.mark.parametrize("model", CLAYS, ids=lambda model: model.name)
 every_size = pytest.mark.parametrize("size", SIZES)
 
 
@@ -190,7 +193,7 @@ def test_neo_hookean_stress_in_terms_of_the_left_cauchy_green_tensor(trial_strai
     np.testing.assert_allclose(stress, expected, atol=1e-12 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("model", [Model.HENCKY_ELASTIC, Model.VON_MISES])
+@pytest.mark.parametrize("model", [Model.HENCKY_ELASTIC, *CLAYS])
 def test_elastic_law_is_isotropic_hooke(model, trial_strains, tensors_of):
     soil, trial = SOILS[model], trial_strains("elastic")
     shear = soil.youngs_modulus / (2.0 * (1.0 + soil.poissons_ratio))
@@ -207,7 +210,7 @@ def test_state_variables_have_names_and_start_values(model):
     soil, depth = SOILS[model], np.array([0.0, 3.0])
     state = dispatch.initial_state(soil, depth)
     assert state.shape == (2, len(dispatch.state_variable_names(soil)))
-    if model == Model.VON_MISES:
+    if model in CLAYS:
         np.testing.assert_allclose(state, [[20e3, 0.0], [26e3, 0.0]])
 
 
@@ -247,21 +250,23 @@ def test_von_mises_returns_radially_to_its_strength(trial_strains):
     np.testing.assert_allclose(result.stress, expected, rtol=1e-12, atol=1e-6)
 
 
-def test_von_mises_strength_in_simple_shear_is_the_undrained_one():
+@every_clay
+def test_strength_in_simple_shear_is_the_undrained_one(model):
     trial = np.zeros((1, 6))
     trial[0, 3] = np.sqrt(2.0) * 0.1
-    stress = evaluate(Model.VON_MISES, trial).stress[0]
+    stress = evaluate(model, trial).stress[0]
     assert stress[3] / np.sqrt(2.0) == pytest.approx(20e3, rel=1e-12)
 
 
-def test_plastic_shear_strain_is_accumulated(trial_strains):
+@every_clay
+def test_plastic_shear_strain_is_accumulated(model):
     """In simple shear back and forth it adds up to the plastic engineering shear strain."""
     state, strain = None, np.zeros((1, 6))
     total = 0.0
     for shear in (0.03, -0.06, 0.06):
         trial = strain.copy()
         trial[0, 3] += np.sqrt(2.0) * shear / 2.0
-        result = evaluate(Model.VON_MISES, trial, state)
+        result = evaluate(model, trial, state)
         total += abs(trial[0, 3] - result.elastic_strain[0, 3]) * np.sqrt(2.0)
         strain, state = result.elastic_strain, result.state
     assert total > 0.08
@@ -269,8 +274,73 @@ def test_plastic_shear_strain_is_accumulated(trial_strains):
     assert state[0, 0] == 20e3
 
 
-def test_von_mises_does_not_see_the_pressure(trial_strains):
+@every_clay
+def test_clay_does_not_see_the_pressure(model, trial_strains):
     trial = trial_strains("plastic")
     pressed = trial - 0.3 * (np.arange(6) < 3)
-    stresses = [deviator(evaluate(Model.VON_MISES, strain).stress) for strain in (trial, pressed)]
+    stresses = [deviator(evaluate(model, strain).stress) for strain in (trial, pressed)]
     np.testing.assert_allclose(stresses[0], stresses[1], atol=1e-6)
+
+
+def principal_strains(rng, lode_angles, size=5e-2):
+    """Deviatoric trial strains (n, 6) with Lode angles in (0, pi / 3) and random directions."""
+    angle = np.asarray(lode_angles)[:, None] + 2.0 * np.pi / 3.0 * np.array([0.0, -1.0, 1.0])
+    principal = size * np.sqrt(2.0 / 3.0) * np.cos(angle)
+    turned = [np.linalg.qr(rng.normal(size=(3, 3)))[0] for _ in angle]
+    tensors = np.array([q @ np.diag(e) @ q.T for q, e in zip(turned, principal, strict=True)])
+    scale = np.array([1.0, 1.0, 1.0, *[np.sqrt(2.0)] * 3])
+    return tensors[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]] * scale
+
+
+@pytest.mark.parametrize("lode_angle", [0.0, 0.05, 0.5, np.pi / 3 - 0.05, np.pi / 3])
+def test_tresca_returns_to_planes_and_edges(lode_angle, rng, tensors_of):
+    """Where two principal strains are (nearly) equal the stress ends on an edge."""
+    trial = principal_strains(rng, np.full(N_STATES, lode_angle))
+    result = evaluate(Model.TRESCA, trial)
+    assert np.abs(yield_function(Model.TRESCA, result.stress, result.state)).max() < 1e-7
+    principal = np.sort(np.linalg.eigvalsh(tensors_of(deviator(result.stress))), axis=1)
+    edge = {0: [-2.0, -2.0, 4.0], 2: [-4.0, 2.0, 2.0]}.get(round(lode_angle / (np.pi / 6)))
+    if edge is None:
+        assert np.ptp(principal[:, 1]) < 1e-6 * 20e3
+        assert np.abs(principal[:, 1]).max() < 0.3 * 20e3
+        return
+    np.testing.assert_allclose(principal, np.tile(np.array(edge) * 20e3 / 3.0, (N_STATES, 1)))
+
+
+@pytest.mark.parametrize("lode_angle", [0.0, np.pi / 3])
+def test_tresca_tangent_at_equal_principal_strains(lode_angle, rng):
+    """The edges have no corner of their own: equal strains are ordinary points of an edge."""
+    trial = principal_strains(rng, np.full(N_STATES, lode_angle))
+    result = evaluate(Model.TRESCA, trial)
+    direction, step = rng.normal(size=(N_STATES, 6)), 1e-7
+    forward, backward = (
+        evaluate(Model.TRESCA, trial + sign * step * direction).stress for sign in (1.0, -1.0)
+    )
+    change = (forward - backward) / (2.0 * step)
+    expected = np.einsum("nij,nj->ni", result.tangent, direction)
+    assert np.abs(change - expected).max() < 1e-6 * np.abs(expected).max()
+
+
+def test_tresca_return_is_the_closest_point(rng):
+    """No admissible stress is nearer to the trial stress in the norm of elastic energy."""
+    trial = principal_strains(rng, rng.uniform(0.0, np.pi / 3, N_STATES))
+    result, elastic = evaluate(Model.TRESCA, trial), evaluate(Model.HENCKY_ELASTIC, trial)
+    others = [evaluate(Model.TRESCA, principal_strains(rng, rng.uniform(0, 1, N_STATES)))]
+    others += [evaluate(Model.TRESCA, trial + 0.02 * rng.normal(size=trial.shape))]
+    plastic = trial - result.elastic_strain
+    assert np.linalg.norm(plastic, axis=1).min() > 1e-2
+    for other in others:
+        work = (plastic * (result.stress - other.stress)).sum(axis=1)
+        assert work.min() > -1e-12 * np.abs(elastic.stress).max()
+
+
+def test_tresca_says_when_the_strain_is_not_finite():
+    shapes = ((1, 6), (1, 6), (1, 2), (1, 6, 6))
+    stress, elastic_strain, state, tangent = (np.empty(shape) for shape in shapes)
+    trial, status = np.full((1, 6), np.nan), np.zeros(1, dtype=np.int64)
+    soil = SOILS[Model.TRESCA]
+    dispatch.update_all(
+        dispatch.pack([soil]), np.zeros(1, dtype=np.int64), trial,
+        dispatch.initial_state(soil, np.zeros(1)), stress, elastic_strain, state, tangent, status,
+    )  # fmt: skip
+    assert status[0] == tresca.NOT_FINITE

@@ -49,7 +49,7 @@ MALFORMED = {
     "no unit": ('embedment = "4 m"', "embedment = 4", 'e.g. "4 m"'),
     "wrong dimension": ('embedment = "4 m"', 'embedment = "4 kPa"', "but a length is needed"),
     "out of range": ("poissons_ratio = 0.49", "poissons_ratio = 0.5", ">= 0 and < 0.5"),
-    "unknown soil": ('model = "von_mises"', 'model = "tresca"', "use one of hencky_elastic"),
+    "unknown soil": ('model = "von_mises"', 'model = "mohr"', "use one of hencky_elastic"),
     "pile wider than the box": ('half_width = "0.5 m"', 'half_width = "7 m"', "box wider"),
     "deeper than the box": ('penetration = "0.3 m"', 'penetration = "6 m"', "make box.depth at"),
     "element larger than the pile": (
