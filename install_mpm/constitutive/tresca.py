@@ -154,10 +154,9 @@ def _turn_tangent(trial, returned, directions, principal_tangent, largest, tange
             for row in range(6):
                 first, mixed = _dyad(directions, a, a, row), _dyad(directions, a, b, row)
                 for column in range(6):
-                    tangent[row, column] += (
-                        principal_tangent[a, b] * first * _dyad(directions, b, b, column)
-                        + turning * mixed * _dyad(directions, a, b, column)
-                    )
+                    tangent[row, column] += principal_tangent[a, b] * first * _dyad(
+                        directions, b, b, column
+                    ) + turning * mixed * _dyad(directions, a, b, column)
 
 
 @jit
