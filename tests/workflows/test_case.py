@@ -124,7 +124,11 @@ def test_another_soil_is_chosen_by_its_tag():
         ("handoff.size_at_pile=0.6 m", "handoff.size_at_pile", "larger than half the pile width"),
         ("box.headroom=1 cm", "box.headroom", "make it at least"),
         ("ground.soil.poissons_ratio=0.5", "ground.soil.poissons_ratio", ">= 0 and < 0.5"),
-        ("ground.soil.model=mohr", "ground.soil.model", "use one of hencky_elastic, neo_hookean, von_mises"),
+        (
+            "ground.soil.model=mohr",
+            "ground.soil.model",
+            "use one of hencky_elastic, neo_hookean, von_mises",
+        ),
         ("ground.k0=true", "ground.k0", "valid number"),
         ("ground.k0=inf", "ground.k0", "finite number"),
         ("numerics.max_iterations=2.5", "numerics.max_iterations", "valid integer"),
