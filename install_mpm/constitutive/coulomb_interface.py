@@ -75,7 +75,10 @@ def update_traction(slip_increment, parameters, traction_old, traction, tangent)
         return STICK
 
     plastic_slip = overstress / (stiffness_s + stiffness_n * tan_friction * tan_dilation)
-    shear = shear_trial - stiffness_s * plastic_slip
+    # from the yield condition: the difference of trial and plastic part leaves the round-off of
+    # the trial, which in a large step is far beyond the strength
+    normal_returned = traction[normal] - stiffness_n * tan_dilation * plastic_slip
+    shear = cohesion - normal_returned * tan_friction
     if shear < 0.0 and tan_friction > 0.0:
         # shear strength cannot be negative: the point has left the cone through its apex
         traction[:] = 0.0
@@ -99,7 +102,7 @@ def update_traction(slip_increment, parameters, traction_old, traction, tangent)
         tangent[normal, i] = -softening * stiffness_n * tan_dilation * direction[i]
         traction[i] = shear * direction[i]
     tangent[normal, normal] = stiffness_n * softening
-    traction[normal] -= stiffness_n * tan_dilation * plastic_slip
+    traction[normal] = normal_returned
     return SLIP
 
 

@@ -202,3 +202,11 @@ def test_results_do_not_depend_on_the_number_of_threads(states, threads):
         results.append(vars(evaluate("dilation", slip, old)))
     for name, value in results[0].items():
         np.testing.assert_array_equal(value, results[1][name])
+
+
+def test_slip_in_a_large_step_leaves_no_round_off_of_the_trial():
+    """The trial of 5e5 Pa is 5e6 times the strength, and the traction is exact all the same."""
+    weak = CoulombInterface(1e7, 1e7, cohesion=0.1, friction_angle=FRICTION)
+    result = evaluate(weak, np.array([[0.05, 0.0]]), np.zeros((1, 2)))
+    assert result.status[0] == SLIP
+    assert result.traction[0, 0] == pytest.approx(0.1, rel=1e-15)
