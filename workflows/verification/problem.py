@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from install_mpm.newton import ROUND_OFF
+
 
 @dataclass(frozen=True)
 class Check:
@@ -47,6 +49,8 @@ class Outcome:
     remarks: tuple[str, ...] = ()
     residual_histories: tuple[tuple[float, ...], ...] = field(default=(), repr=False)
     """Relative Newton residuals of every step, for the statement on convergence."""
+    round_off: float = ROUND_OFF
+    """Relative residual below which nothing shows but round-off: stiff ground, small loads."""
 
 
 @dataclass(frozen=True)
