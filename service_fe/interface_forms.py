@@ -16,7 +16,9 @@ import numpy as np
 
 from handoff.fe_mesh import FacetTag, FEMesh
 from install_mpm.constitutive import coulomb_interface
+from install_mpm.conventions import Kinematics
 from install_mpm.pile import surface_normals, tangent_of
+from service_fe.kinematics import width
 from service_fe.rigid_pile import rigid_motion
 
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(3)
@@ -66,7 +68,7 @@ def edge_shape_functions(coordinate: np.ndarray) -> np.ndarray:
 class InterfaceForms:
     """Discrete interface on the pile's facets of a mesh; there may be none."""
 
-    def __init__(self, mesh: FEMesh) -> None:
+    def __init__(self, mesh: FEMesh, kinematics: Kinematics = Kinematics.PLANE_STRAIN) -> None:
         is_pile = np.isin(mesh.facet_tag, (FacetTag.PILE_BASE, FacetTag.PILE_SHAFT))
         nodes = mesh.facet_nodes[is_pile]
         ends = mesh.nodes[nodes[:, :2]]
@@ -76,6 +78,7 @@ class InterfaceForms:
         self.positions = np.einsum("qa,fai->fqi", shape, mesh.nodes[nodes]).reshape(-1, 2)
         lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         self.areas = np.outer(lengths, 0.5 * GAUSS_WEIGHTS).ravel()
+        self.areas *= width(self.positions, kinematics)
         self.parts = np.repeat(mesh.facet_tag[is_pile], n_gauss)
         self.normals = surface_normals(self.parts)
         self._dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(-1, N_SOIL)

@@ -18,6 +18,7 @@ import numpy as np
 from handoff.fe_state_file import FEState
 from handoff.tensor_arrays import tensors_of
 from install_mpm.constitutive.dispatch import Materials
+from service_fe.axisymmetric_forms import AxisymmetricForms
 from service_fe.interface_forms import InterfaceForms, InterfaceResponse
 from service_fe.linear_solver import FactorisationError, TangentSolver
 from service_fe.material_map import SoilResponse, soil_response
@@ -30,7 +31,7 @@ from service_fe.soil_forms import SoilForms
 class Model(NamedTuple):
     """The discrete model; nothing in it depends on the state of the ground."""
 
-    soil: SoilForms
+    soil: SoilForms | AxisymmetricForms
     interface: InterfaceForms
     solver: TangentSolver
     materials: Materials
@@ -39,7 +40,7 @@ class Model(NamedTuple):
     is_fixed: np.ndarray
     """Supports (node, 2) bool."""
     pile_weight: np.ndarray
-    """Weight (3,) of the modelled half of the pile, in N, N, N m."""
+    """Weight (3,) of the modelled part of the pile, in N, N, N m."""
     numerics: ServiceNumerics
 
 
@@ -66,7 +67,7 @@ class Step(NamedTuple):
     state: FEState
     increment: Unknowns
     pile_load: np.ndarray
-    """Load (3,) in N, N, N m on the modelled half of the pile at the end, besides its weight."""
+    """Load (3,) in N, N, N m on the modelled part of the pile at the end, besides its weight."""
     support_reaction: np.ndarray
     """Forces (node, 2) in N of the supports on the soil; zero at free nodes."""
     residuals: tuple[float, ...]
@@ -74,7 +75,7 @@ class Step(NamedTuple):
 
     @property
     def head_load(self) -> float:
-        """Downward load in N on the head of the modelled half."""
+        """Downward load in N on the head of the modelled part."""
         return float(-self.pile_load[1]) + 0.0  # no negative zero
 
     @property

@@ -8,7 +8,6 @@ from typing import Protocol
 
 import numpy as np
 
-from install_mpm.pile import SYMMETRY_FACTOR
 from service_fe.options import Displace, Programme
 from service_fe.rigid_pile import PileControl, loaded, moved
 
@@ -42,24 +41,23 @@ class DisplacementStep:
 
 @dataclass(frozen=True)
 class HeadLoadStep:
-    """The downward load on the whole pile goes from ``load_start`` to ``load_end`` in N."""
+    """The load on the modelled part of the pile goes from ``load_start`` to ``load_end``, N."""
 
     load_start: float
     load_end: float
 
     @property
     def size(self) -> float:
-        """Change of load of the whole step in N."""
+        """Change of load of the step in N."""
         return self.load_end - self.load_start
 
     def control(self, start: float, end: float) -> PileControl:
-        """Return the load on the modelled half at share ``end`` of the step."""
-        load = self.load_start + end * (self.load_end - self.load_start)
-        return loaded(load / SYMMETRY_FACTOR)
+        """Return the load at share ``end`` of the step."""
+        return loaded(self.load_start + end * self.size)
 
 
 def imposed_steps(programme: Programme, head_load: float) -> list[ImposedStep]:
-    """Return the steps of a programme that starts at ``head_load`` in N on the whole pile."""
+    """Return the steps of a programme that starts at ``head_load`` in N on the modelled part."""
     if isinstance(programme, Displace):
         return _displacement_steps(programme)
     loads = head_load * np.linspace(1.0, 0.0, programme.steps + 1)

@@ -15,14 +15,15 @@ from handoff.geostatic import geostatic_state
 from handoff.tensor_arrays import six_vectors
 from install_mpm.constitutive import coulomb_interface, dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground, undrained_shear_strength
 from service_fe.interface_forms import InterfaceForms
+from service_fe.kinematics import WHOLE_BODY, soil_forms
 from service_fe.linear_solver import TangentSolver
 from service_fe.load_step import LoadStep, Model, Step, Unknowns
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
 from service_fe.rigid_pile import PileControl, held
-from service_fe.soil_forms import SoilForms
 
 
 def roller_supports(mesh: FEMesh) -> np.ndarray:
@@ -39,7 +40,7 @@ def roller_supports(mesh: FEMesh) -> np.ndarray:
 
 
 class ServiceProblem:
-    """Soil, interface and rigid pile of the modelled half, per metre run.
+    """Soil, interface and rigid pile: the modelled half per metre run, or a body of revolution.
 
     Parameters
     ----------
@@ -50,11 +51,19 @@ class ServiceProblem:
     interface
         Law of the interface; its strength follows that of the undisturbed ground.
     pile_weight
-        Weight in N of the modelled half of the pile, acting on its axis.
+        Weight in N of the modelled half of the pile, or of a pile of revolution, on its axis.
     numerics
         Tolerance and limits of Newton's method.
     is_fixed
         Supports (node, 2) bool; the default is ``roller_supports``.
+    kinematics
+        Plane strain or axisymmetric.  In axisymmetry all forces, areas and volumes are those of the
+        whole body, and the pile may move along its axis only.
+
+    Raises
+    ------
+    ValueError
+        If the mesh cannot be used, or ``kinematics`` is three-dimensional.
     """
 
     def __init__(
@@ -65,10 +74,13 @@ class ServiceProblem:
         pile_weight: float = 0.0,
         numerics: ServiceNumerics | None = None,
         is_fixed: np.ndarray | None = None,
+        kinematics: Kinematics = Kinematics.PLANE_STRAIN,
     ) -> None:
+        self._soil = soil_forms(mesh, kinematics)
         self.mesh, self.ground = mesh, ground
         self.numerics = numerics or ServiceNumerics()
-        self._soil, self._interface = SoilForms(mesh), InterfaceForms(mesh)
+        self.whole_body = WHOLE_BODY[kinematics]
+        self._interface = InterfaceForms(mesh, kinematics)
         self.gravity = self._soil.weight(ground.unit_weight)
         strength = undrained_shear_strength(ground, self._interface.positions[:, 1])
         self.model = Model(
@@ -89,7 +101,7 @@ class ServiceProblem:
 
     @property
     def integration_volumes(self) -> np.ndarray:
-        """Integration weights (n_q,) in m^3, per metre run."""
+        """Integration weights (n_q,) in m^3, per metre run or of the whole body."""
         return self._soil.integration_volumes
 
     @property
@@ -99,7 +111,7 @@ class ServiceProblem:
 
     @property
     def interface_areas(self) -> np.ndarray:
-        """Integration weights (n_i,) in m^2, per metre run."""
+        """Integration weights (n_i,) in m^2, per metre run or of the whole body."""
         return self._interface.areas
 
     @property

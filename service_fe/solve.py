@@ -12,7 +12,6 @@ import numpy as np
 
 from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEState
 from install_mpm.newton import convergence_order
-from install_mpm.pile import SYMMETRY_FACTOR
 from service_fe.load_step import Step, Unknowns
 from service_fe.loading import ImposedStep, imposed_steps
 from service_fe.newton import StepNotConvergedError
@@ -142,9 +141,9 @@ def run_programme(
     ServiceError
         If a step does not converge.
     """
-    head_load = _whole_pile(-problem.pile_load(state)[1])
+    head_load = -float(problem.pile_load(state)[1])
     steps = imposed_steps(programme, head_load)
-    rows = [_Row(0.0, head_load, 0, 0, ())]
+    rows = [_Row(0.0, problem.whole_body * head_load, 0, 0, ())]
     displacement = np.zeros_like(problem.mesh.nodes)
     guess, size = None, 0.0
     for number, imposed in enumerate(steps, start=1):
@@ -158,7 +157,7 @@ def run_programme(
             ) from error
         state, guess, size = taken.last.state, taken.increment, imposed.size
         displacement += taken.increment.displacement
-        rows.append(_row(rows[-1].displacement, taken))
+        rows.append(_row(rows[-1].displacement, problem.whole_body, taken))
         observe(ServiceProgress(programme.name, number, len(steps), *rows[-1][:4]))
     return ProgrammeResult(programme, _curve(rows), Displacement(displacement), state)
 
@@ -208,10 +207,10 @@ class _Row(NamedTuple):
     residuals: tuple[float, ...]
 
 
-def _row(displacement: float, taken: Advance) -> _Row:
+def _row(displacement: float, whole_body: float, taken: Advance) -> _Row:
     return _Row(
         displacement - float(taken.increment.motion[1]),
-        _whole_pile(taken.last.head_load),
+        whole_body * taken.last.head_load,
         taken.iterations,
         taken.cuts,
         taken.last.residuals,
@@ -232,7 +231,3 @@ def _curve(rows: Sequence[_Row]) -> Curve:
         cuts=np.array([row.cuts for row in rows], dtype=np.int64),
         residual_history=history,
     )
-
-
-def _whole_pile(half: float) -> float:
-    return SYMMETRY_FACTOR * float(half)
