@@ -8,11 +8,14 @@ is c L + N tan(phi).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic
+from install_mpm.conventions import Unit
+from workflows.verification.problem import Check, Outcome, Problem, Series, at_most, relative
 from workflows.verification.small_strain_blocks import load, make_blocks
 
 NODES = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
@@ -33,6 +36,8 @@ class InterfaceShearResult:
     """Closed form, (n_steps,) in N."""
     slip: float
     """Relative displacement of the two sides at the end in m."""
+    exact_slip: float
+    """Closed form of it in m."""
     residuals: tuple[np.ndarray, ...]
     """Relative residuals of the Newton iterations of each step."""
 
@@ -89,9 +94,126 @@ def interface_shear(
         residuals.append(equilibrium.newton.residuals)
         slip += equilibrium.displacement[4, 0] - equilibrium.displacement[3, 0]
     top = displacement * np.arange(1, steps + 1) / steps
-    shear_modulus = youngs_modulus / 2.0
-    stiffness = 1.0 / (2.0 / shear_modulus + 1.0 / shear_stiffness)
+    # a block that is free to rock is a beam of one element, twice as flexible
+    of_blocks = (2.0 if is_held_vertically else 4.0) / (youngs_modulus / 2.0)
     strength = cohesion + precompression * np.tan(friction_angle)
+    exact = np.minimum(top / (of_blocks + 1.0 / shear_stiffness), strength)
     return InterfaceShearResult(
-        top, np.array(forces), np.minimum(stiffness * top, strength), slip, tuple(residuals)
+        top,
+        np.array(forces),
+        exact,
+        slip,
+        displacement - exact[-1] * of_blocks,
+        tuple(residuals),
     )
+
+
+Stress = Annotated[float, Unit("Pa")]
+Stiffness = Annotated[float, Unit("Pa/m")]
+Length = Annotated[float, Unit("m")]
+Angle = Annotated[float, Unit("rad")]
+
+DEGREES_24 = float(np.deg2rad(24.0))
+
+ROUND_OFF = 1e-10
+"""Relative residual that is round-off: a trial step is up to 5e6 times the strength."""
+
+
+def pa11(
+    *,
+    E: Stress = 10e3,
+    ks: Stiffness = 1e7,
+    kn: Stiffness = 1e7,
+    c: Stress = 0.1,
+    phi: Angle = DEGREES_24,
+    u: Length = 0.5,
+) -> Outcome:
+    """Two unit blocks, joined by an interface without normal stress, are sheared in ten steps.
+
+    The force is the lesser of c L and the elastic springs in series, 1 / k = 1 / k_blocks + 1 /
+    k_s.  With the data of Fig. 9 of the paper it is c L in every step.  (a) has all vertical
+    displacements held, in (b) they are free at the interface.
+    """
+    results = {
+        name: interface_shear(
+            youngs_modulus=E,
+            shear_stiffness=ks,
+            normal_stiffness=kn,
+            cohesion=c,
+            friction_angle=phi,
+            displacement=u,
+            is_held_vertically=is_held,
+        )
+        for name, is_held in (("a", True), ("b", False))
+    }
+    checks = [check for name, result in results.items() for check in _checks(name, result, 1e-10)]
+    return Outcome(
+        checks=tuple(checks),
+        series=tuple(_curve(name, result) for name, result in results.items()),
+        residual_histories=tuple(
+            tuple(history) for result in results.values() for history in result.residuals
+        ),
+        round_off=ROUND_OFF,
+    )
+
+
+def pa12(
+    *,
+    E: Stress = 10e3,
+    ks: Stiffness = 1e7,
+    kn: Stiffness = 1e7,
+    c: Stress = 0.1,
+    phi: Angle = DEGREES_24,
+    p: Stress = 1e3,
+    u: Length = 0.5,
+) -> Outcome:
+    """As PA11 (a), under a uniform compression p: an elastic branch, then c L + p L tan(phi)."""
+    result = interface_shear(
+        youngs_modulus=E,
+        shear_stiffness=ks,
+        normal_stiffness=kn,
+        cohesion=c,
+        friction_angle=phi,
+        precompression=p,
+        displacement=u,
+    )
+    return Outcome(
+        checks=_checks("a", result, 1e-8),
+        series=(_curve("a", result),),
+        residual_histories=tuple(tuple(history) for history in result.residuals),
+        round_off=ROUND_OFF,
+    )
+
+
+def _checks(name: str, result: InterfaceShearResult, tolerance: float) -> tuple[Check, ...]:
+    """Return the checks of the force at the first, the worst and the last step, and of the slip."""
+    worst = int(np.argmax(np.abs(result.force / result.exact - 1.0)))
+    force, exact = result.force, result.exact
+    return (
+        relative(f"({name}) force at the first step, N/m", force[0], exact[0], tolerance),
+        relative(f"({name}) force, its worst step, N/m", force[worst], exact[worst], tolerance),
+        relative(f"({name}) force at the last step, N/m", force[-1], exact[-1], tolerance),
+        relative(f"({name}) slip at the end, m", result.slip, result.exact_slip, 1e-6),
+        at_most(
+            f"({name}) Newton iterations of a step, largest",
+            max(len(history) - 1 for history in result.residuals),
+            3,
+        ),
+    )
+
+
+def _curve(name: str, result: InterfaceShearResult) -> Series:
+    return Series(
+        f"({name}) shear force",
+        "displacement of the top, m",
+        "force, N/m",
+        tuple(result.displacement),
+        tuple(result.force),
+        tuple(result.exact),
+    )
+
+
+PROBLEMS = (
+    Problem("PA11", "Two blocks sheared at a weak interface (paper, Fig. 9)", pa11, is_quick=True),
+    Problem("PA12", "Two blocks sheared under compression", pa12, is_quick=True),
+)

@@ -11,7 +11,10 @@ from workflows.errors import CaseError
 from workflows.verification.problem import Problem
 
 MODULES: tuple[str, ...] = (
-    # one name per line
+    "interface_shear",
+    "sliding_block",
+    "strip_footing_fe",
+    "strip_footing_mpm",
 )
 """Files of this folder with a ``PROBLEM`` or ``PROBLEMS``, sorted."""
 

@@ -8,18 +8,23 @@ corner cannot be represented.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
 from handoff.fe_mesh import FacetTag, FEMesh
 from handoff.gmsh_triangles import triangulate
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
+from install_mpm.conventions import Unit
 from install_mpm.ground import Ground
+from install_mpm.newton import ROUND_OFF
 from service_fe.load_step import Step
 from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem, roller_supports
 from service_fe.rigid_pile import held
+from workflows.verification.problem import Outcome, Problem, Series, at_least, at_most, relative
 
 EXACT = 2.0 + np.pi
 
@@ -146,3 +151,71 @@ def _quadratic(
     cell_nodes = np.column_stack([triangles, middle.reshape(-1, 3)])
     facet_nodes = np.column_stack([ends, middle])[uses[edge] == 1]
     return cell_nodes, facet_nodes, np.concatenate([vertices, vertices[unique].mean(axis=1)])
+
+
+SIZES = (0.05, 0.025, 0.0125)
+"""Edge length of the elements at the footing's edge over its width: a study of convergence."""
+
+TOLERANCE = 0.02
+
+
+def outcome(results: Sequence[StripFootingResult], round_off: float = ROUND_OFF) -> Outcome:
+    """Return the outcome of footings on meshes of ``SIZES``."""
+    coarse, fine = results[0], results[-1]
+    falls = abs(fine.error / coarse.error)
+    return Outcome(
+        checks=(
+            relative("N_c on the finest mesh", fine.plateau, EXACT, TOLERANCE),
+            at_least("N_c approached from above: finest mesh", fine.plateau, EXACT),
+            at_most("error of the finest over that of the coarsest mesh", falls, 0.6),
+            at_most("change of load over the last quarter", abs(fine.slope), 1e-3),
+        ),
+        series=(
+            Series(
+                "finest mesh",
+                "settlement / B",
+                "mean pressure / su",
+                tuple(fine.settlement),
+                tuple(fine.bearing_factor),
+                tuple(np.full(len(fine.settlement), EXACT)),
+            ),
+            Series(
+                "error of N_c",
+                "size at the edge of the footing / B",
+                "relative error",
+                SIZES,
+                tuple(abs(result.error) for result in results),
+                is_logarithmic=True,
+            ),
+        ),
+        residual_histories=tuple(history for result in results for history in result.residuals),
+        round_off=round_off,
+    )
+
+
+def pb1_fe(
+    *,
+    B: Annotated[float, Unit("m")] = 1.0,
+    su: Annotated[float, Unit("Pa")] = 10e3,
+    E_over_su: float = 1000.0,
+    nu: float = 0.49,
+) -> Outcome:
+    """A rough rigid strip of width B is pushed into weightless clay: (2 + pi) su B (Prandtl).
+
+    The finite elements of the service stage; the settlement is 40 su B / E.
+    """
+    return outcome(
+        [
+            strip_footing(
+                size,
+                width=B,
+                undrained_shear_strength=su,
+                rigidity_index=E_over_su,
+                poissons_ratio=nu,
+            )
+            for size in SIZES
+        ]
+    )
+
+
+PROBLEM = Problem("PB1-FE", "Strip footing on clay, finite elements", pb1_fe, is_quick=False)

@@ -8,17 +8,21 @@ the theory of small deformation holds; the background mesh therefore stays where
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
 
 from handoff.fe_mesh import FEMesh
 from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
 from install_mpm.constitutive.parameters import VonMises
+from install_mpm.conventions import Unit
 from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground
 from install_mpm.options import Numerics
 from service_fe.problem import roller_supports
 from workflows.verification.body import advance, make_body
-from workflows.verification.strip_footing_fe import StripFootingResult, footing_mesh
+from workflows.verification.problem import Outcome, Problem
+from workflows.verification.strip_footing_fe import SIZES, StripFootingResult, footing_mesh, outcome
 
 
 def strip_footing(
@@ -76,3 +80,35 @@ def _rough_footing(
     displacement = np.zeros_like(mesh.nodes)
     displacement[under_footing, 1] = -advance
     return Prescribed(is_prescribed, displacement), under_footing
+
+
+ROUND_OFF = 1e-9
+"""Relative residual at which the stiff ground leaves nothing to gain."""
+
+
+def pb1(
+    *,
+    B: Annotated[float, Unit("m")] = 1.0,
+    su: Annotated[float, Unit("Pa")] = 10e3,
+    E_over_su: float = 2e4,
+    nu: float = 0.49,
+) -> Outcome:
+    """A rough rigid strip of width B is pushed into weightless clay: (2 + pi) su B (Prandtl).
+
+    The step of the installation stage; the settlement is 40 su B / E, which has to stay small.
+    """
+    results = [
+        strip_footing(
+            size,
+            width=B,
+            undrained_shear_strength=su,
+            rigidity_index=E_over_su,
+            poissons_ratio=nu,
+            settlement=40.0 / E_over_su,
+        )
+        for size in SIZES
+    ]
+    return outcome(results, ROUND_OFF)
+
+
+PROBLEM = Problem("PB1", "Strip footing on clay, material point method", pb1, is_quick=True)

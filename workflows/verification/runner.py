@@ -1,0 +1,128 @@
+"""Runs reference problems one after the other and judges them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from install_mpm.newton import convergence_order
+from workflows.verification.parameters import parameters_of
+from workflows.verification.problem import Check, Outcome, Problem, at_least
+
+QUADRATIC = 1.8
+"""Smallest median order of Newton's method that counts as quadratic."""
+
+QUICK_SECONDS, OTHER_SECONDS = 5.0, 60.0
+"""Typical time of a problem, for the estimate while they run."""
+
+
+@dataclass(frozen=True)
+class NewtonStatement:
+    """How Newton's method converged over all steps of a problem."""
+
+    steps: int
+    most_iterations: int
+    median_order: float
+    """NaN if no step took enough iterations to tell."""
+    smallest_order: float
+
+    @property
+    def text(self) -> str:
+        """The statement in words."""
+        counts = f"{self.steps} steps, at most {self.most_iterations} iterations"
+        if np.isnan(self.median_order):
+            return f"{counts}; too few above round-off to tell an order"
+        return f"{counts}; order {self.median_order:.2f} (median), {self.smallest_order:.2f} (min)"
+
+
+@dataclass(frozen=True)
+class Verified:
+    """A problem, what it was run with and what came out."""
+
+    problem: Problem
+    values: Mapping[str, Any]
+    """Value of every parameter."""
+    seconds: float
+    outcome: Outcome | None
+    """None if the problem could not be solved."""
+    failure: str = ""
+    """Why it could not, in a sentence."""
+
+    @property
+    def newton(self) -> NewtonStatement | None:
+        """The statement on convergence, None if the problem has no Newton iterations."""
+        if self.outcome is None or not self.outcome.residual_histories:
+            return None
+        return newton_statement(self.outcome.residual_histories, self.outcome.round_off)
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """Checks of the problem, and that Newton's method is quadratic where an order shows."""
+        newton = self.newton
+        own = self.outcome.checks if self.outcome else ()
+        if newton is None or np.isnan(newton.median_order):
+            return own
+        return (*own, at_least("order of Newton's method, median", newton.median_order, QUADRATIC))
+
+    @property
+    def is_met(self) -> bool:
+        """Whether the problem was solved and every check holds."""
+        return bool(self.checks) and all(check.is_met for check in self.checks)
+
+
+def newton_statement(histories: Sequence[Sequence[float]], round_off: float) -> NewtonStatement:
+    """Return the statement on residual histories; steps that show no order are left out of it."""
+    orders = np.array([convergence_order(np.array(history), round_off) for history in histories])
+    orders = orders[~np.isnan(orders)]
+    return NewtonStatement(
+        steps=len(histories),
+        most_iterations=max(len(history) - 1 for history in histories),
+        median_order=float(np.median(orders)) if orders.size else float("nan"),
+        smallest_order=float(orders.min()) if orders.size else float("nan"),
+    )
+
+
+def run_problem(problem: Problem, values: Mapping[str, Any] | None = None) -> Verified:
+    """Return the result of ``problem`` with ``values`` in place of its defaults.
+
+    A problem that raises an error is a failed one; nothing is raised.
+    """
+    inputs = {name: one.default for name, one in parameters_of(problem).items()} | dict(
+        values or {}
+    )
+    start = time.perf_counter()
+    try:
+        outcome, failure = problem.run(**inputs), ""
+    except Exception as error:  # whatever it is, the other problems go on
+        outcome, failure = None, _sentence(error)
+    return Verified(problem, inputs, time.perf_counter() - start, outcome, failure)
+
+
+def _sentence(error: Exception) -> str:
+    text = " ".join(str(error).split())
+    is_told = isinstance(error, RuntimeError | ValueError) and text
+    return text if is_told else f"{type(error).__name__}: {text}".removesuffix(": ")
+
+
+def run_problems(
+    problems: Sequence[Problem],
+    values: Mapping[str, Any],
+    advance: Callable[[int, int, str], None],
+    observe: Callable[[Verified], None],
+) -> list[Verified]:
+    """Return the results of all ``problems``; ``values`` change the parameters of each.
+
+    ``advance`` is told of expected seconds before each problem, ``observe`` gets each result.
+    """
+    expected = [QUICK_SECONDS if problem.is_quick else OTHER_SECONDS for problem in problems]
+    results: list[Verified] = []
+    for number, problem in enumerate(problems):
+        note = f"{problem.identifier} {problem.title}"
+        advance(round(sum(expected[:number])), round(sum(expected)), note)
+        results.append(run_problem(problem, values))
+        observe(results[-1])
+    return results
