@@ -144,4 +144,4 @@ def test_first_step_is_resolved():
 def test_release_steps_go_to_zero():
     steps = imposed_steps(Release(steps=2), 100.0)
     assert steps == [HeadLoadStep(100.0, 50.0), HeadLoadStep(50.0, 0.0)]
-    np.testing.assert_allclose(steps[1].control(0.0, 0.5).load, [0.0, -12.5, 0.0])
+    np.testing.assert_allclose(steps[1].control(0.0, 0.5).load, [0.0, -25.0, 0.0])
