@@ -70,3 +70,25 @@ def rotate(
 def stretch(mesh: BackgroundMesh, factors: tuple[float, float]) -> BackgroundMesh:
     """Return the mesh with its reference nodes scaled from the origin by ``factors`` per axis."""
     return straightened(mesh._replace(nodes=mesh.reference_nodes * np.array(factors)))
+
+
+def expand(
+    mesh: BackgroundMesh,
+    growth: float,
+    *,
+    inner_radius: float,
+    outer_radius: float,
+    is_radius_horizontal: bool = False,
+) -> BackgroundMesh:
+    """Return the mesh with its reference nodes moved away from the origin by ``growth`` (m).
+
+    The whole of it applies within ``inner_radius``; it tapers linearly to zero at ``outer_radius``.
+    The radius is the distance from the origin, or the horizontal one from the vertical axis.
+    """
+    nodes = mesh.reference_nodes
+    horizontal = np.column_stack([nodes[:, 0], np.zeros(len(nodes))])
+    outward = horizontal if is_radius_horizontal else nodes
+    radius = np.linalg.norm(outward, axis=1)
+    share = np.clip((outer_radius - radius) / (outer_radius - inner_radius), 0.0, 1.0)
+    distance = growth * share / np.maximum(radius, inner_radius)
+    return straightened(mesh._replace(nodes=nodes + distance[:, None] * outward))

@@ -11,6 +11,7 @@ from workflows.errors import CaseError
 from workflows.verification.problem import Problem
 
 MODULES: tuple[str, ...] = (
+    "cavity",
     "interface_shear",
     "sliding_block",
     "strip_footing_fe",
