@@ -1,4 +1,4 @@
-"""The command line ``screwpile``: run, its stages one by one, check, template.
+"""The command line ``screwpile``: run, its stages one by one, check, template, verify.
 
 Modules that take long to load are imported inside the commands, so that others answer at once.
 """
@@ -16,6 +16,9 @@ from workflows.environment import prepare
 
 if TYPE_CHECKING:
     from workflows.case import Case
+
+NOT_MET = 1
+"""Exit status after a reference problem that is not within its tolerance."""
 
 USER_ERROR = 2
 """Exit status after an error that the user can mend."""
@@ -143,6 +146,45 @@ def template() -> None:
     from workflows.template import template_text
 
     sys.stdout.write(template_text())
+
+
+@app.command()
+def verify(
+    problems: Annotated[
+        list[str] | None, typer.Argument(metavar="[ID]...", help="Problems; all if none is named.")
+    ] = None,
+    overrides: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="KEY=VALUE...", help="Change values of one problem."),
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Only those that take seconds.")] = False,
+    report_file: Annotated[
+        Path | None, typer.Option("--report", metavar="FILE", help="Write a page (Markdown).")
+    ] = None,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write all numbers (JSON).")
+    ] = None,
+    is_listed: Annotated[
+        bool, typer.Option("--list", help="Print the problems and their parameters.")
+    ] = False,
+) -> None:
+    """Run reference problems; exit status 1 if one is not within its tolerance."""
+    from workflows.verification_console import print_list, verify_problems
+
+    if is_listed:
+        print_list()
+        return
+    results = verify_problems(problems or (), overrides or (), quick, (report_file, json_file))
+    if json_file is not None:
+        from workflows.verification_json import write_json
+
+        write_json(results, json_file)
+    if report_file is not None:
+        from workflows.verification_report import write_report
+
+        write_report(results, report_file)
+    if not all(result.is_met for result in results):
+        raise typer.Exit(NOT_MET)
 
 
 def _load(path: Path, output: Path | None, overrides: list[str] | None) -> tuple[Case, Path]:

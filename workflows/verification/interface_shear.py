@@ -144,7 +144,7 @@ def pa11(
             displacement=u,
             is_held_vertically=is_held,
         )
-        for name, is_held in (("a", True), ("b", False))
+        for name, is_held in (("(a) ", True), ("(b) ", False))
     }
     checks = [check for name, result in results.items() for check in _checks(name, result, 1e-10)]
     return Outcome(
@@ -178,8 +178,8 @@ def pa12(
         displacement=u,
     )
     return Outcome(
-        checks=_checks("a", result, 1e-8),
-        series=(_curve("a", result),),
+        checks=_checks("", result, 1e-8),
+        series=(_curve("", result),),
         residual_histories=tuple(tuple(history) for history in result.residuals),
         round_off=ROUND_OFF,
     )
@@ -190,12 +190,12 @@ def _checks(name: str, result: InterfaceShearResult, tolerance: float) -> tuple[
     worst = int(np.argmax(np.abs(result.force / result.exact - 1.0)))
     force, exact = result.force, result.exact
     return (
-        relative(f"({name}) force at the first step, N/m", force[0], exact[0], tolerance),
-        relative(f"({name}) force, its worst step, N/m", force[worst], exact[worst], tolerance),
-        relative(f"({name}) force at the last step, N/m", force[-1], exact[-1], tolerance),
-        relative(f"({name}) slip at the end, m", result.slip, result.exact_slip, 1e-6),
+        relative(f"{name}force at the first step, N/m", force[0], exact[0], tolerance),
+        relative(f"{name}force, its worst step, N/m", force[worst], exact[worst], tolerance),
+        relative(f"{name}force at the last step, N/m", force[-1], exact[-1], tolerance),
+        relative(f"{name}slip at the end, m", result.slip, result.exact_slip, 1e-6),
         at_most(
-            f"({name}) Newton iterations of a step, largest",
+            f"{name}Newton iterations of a step, largest",
             max(len(history) - 1 for history in result.residuals),
             3,
         ),
@@ -204,7 +204,7 @@ def _checks(name: str, result: InterfaceShearResult, tolerance: float) -> tuple[
 
 def _curve(name: str, result: InterfaceShearResult) -> Series:
     return Series(
-        f"({name}) shear force",
+        f"{name}shear force",
         "displacement of the top, m",
         "force, N/m",
         tuple(result.displacement),

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from install_mpm.newton import convergence_order
-from workflows.verification.parameters import parameters_of
+from workflows.verification.parameters import Parameter, parameters_of
 from workflows.verification.problem import Check, Outcome, Problem, at_least
 
 QUADRATIC = 1.8
@@ -51,6 +51,11 @@ class Verified:
     """None if the problem could not be solved."""
     failure: str = ""
     """Why it could not, in a sentence."""
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The parameters of the problem, in its order."""
+        return tuple(parameters_of(self.problem).values())
 
     @property
     def newton(self) -> NewtonStatement | None:

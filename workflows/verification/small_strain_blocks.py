@@ -17,7 +17,8 @@ from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic
 from install_mpm.conventions import GRAVITY
-from install_mpm.equilibrium import Discretisation, Prescribed, StepEquilibrium, find_equilibrium
+from install_mpm.discretisation import Discretisation
+from install_mpm.equilibrium import Prescribed, StepEquilibrium, find_equilibrium
 from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule
 from install_mpm.linear_solvers import mumps

@@ -1,0 +1,133 @@
+"""``screwpile verify``: chooses reference problems, runs them and shows the results."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from workflows.errors import CaseError
+from workflows.progress import Reporter
+from workflows.verification import registry
+from workflows.verification.parameters import parameters_of, read_assignments
+from workflows.verification.problem import Problem
+from workflows.verification.runner import Verified, run_problems
+from workflows.verification_numbers import HEADINGS, cells, count_text, inputs_text
+
+WIDTH = 110
+"""Columns where the output is no terminal."""
+
+STYLES = {True: "green", False: "bold red"}
+
+
+def console() -> Console:
+    """Return the console of the command."""
+    is_terminal = sys.stdout.isatty()
+    return Console(highlight=False, width=None if is_terminal else WIDTH)
+
+
+def choose(identifiers: Sequence[str], is_quick: bool) -> list[Problem]:
+    """Return the problems that are named, all if none is; of these the quick ones if asked for.
+
+    Raises
+    ------
+    CaseError
+        If a name is unknown, or none is left.
+    """
+    named = dict.fromkeys(registry.problem(name).identifier for name in identifiers)
+    chosen = [registry.problem(name) for name in named or registry.problems()]
+    chosen = [problem for problem in chosen if problem.is_quick or not is_quick]
+    if not chosen:
+        raise CaseError(f"none of {', '.join(named)} is a quick problem; leave out --quick")
+    return chosen
+
+
+def verify_problems(
+    arguments: Iterable[str], overrides: Iterable[str], is_quick: bool, files: Iterable[Path | None]
+) -> list[Verified]:
+    """Run the problems that the command line names and return their results.
+
+    ``arguments`` are identifiers, and assignments that follow the first one of ``--set``; ``files``
+    are to be written later.
+
+    Raises
+    ------
+    CaseError
+        If a problem or a parameter is unknown, a value does not suit, or a file cannot be written.
+    """
+    arguments, assignments = list(arguments), list(overrides)
+    assignments += [text for text in arguments if "=" in text]
+    chosen = choose([text for text in arguments if "=" not in text], is_quick)
+    if assignments and len(chosen) != 1:
+        raise CaseError("--set changes one problem; name it, e.g. screwpile verify PA7 --set b=2")
+    values = read_assignments(chosen[0], assignments) if assignments else {}
+    for file in files:
+        if file is not None:
+            _make_folder(file)
+    reporter = Reporter(console())
+    doing = f"{len(chosen)} reference problem{'s' if len(chosen) > 1 else ''}"
+    with reporter.stage("verify", doing) as advance:
+        results = run_problems(
+            chosen, values, advance, lambda result: print_result(result, reporter.console)
+        )
+    reporter.say(count_text(results))
+    return results
+
+
+def _make_folder(file: Path) -> None:
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CaseError(f"{file} cannot be written: {error.strerror}") from error
+    if file.is_dir():
+        raise CaseError(f"{file} is a folder; name a file")
+
+
+def print_result(result: Verified, console: Console) -> None:
+    """Print inputs, checks and convergence of one problem."""
+    verdict = "met" if result.is_met else "FAILED"
+    console.print(
+        Text.assemble(
+            (f"{result.problem.identifier}  {result.problem.title}: ", "bold"),
+            (verdict, STYLES[result.is_met]),
+            f"  ({result.seconds:.1f} s)",
+        )
+    )
+    console.print(Text(f"with {inputs_text(result)}"), soft_wrap=True)
+    if result.outcome is None:
+        console.print(Text(f"not solved: {result.failure}", STYLES[False]), soft_wrap=True)
+    else:
+        console.print(_table(result))
+        if result.newton is not None:
+            console.print(f"Newton: {result.newton.text}", soft_wrap=True)
+        for remark in result.outcome.remarks:
+            console.print(Text(remark), soft_wrap=True)
+    console.print()
+
+
+def _table(result: Verified) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for heading in HEADINGS:
+        is_number = heading not in ("quantity", "")
+        table.add_column(
+            heading, justify="right" if is_number else "left", no_wrap=heading != "quantity"
+        )
+    for check in result.checks:
+        *texts, verdict = cells(check)
+        table.add_row(*map(Text, texts), Text(verdict, STYLES[check.is_met]))
+    return table
+
+
+def print_list() -> None:
+    """Print all problems with their parameters and defaults."""
+    out = console()
+    for problem in registry.problems().values():
+        mark = "  (quick)" if problem.is_quick else ""
+        out.print(Text.assemble((problem.identifier, "bold"), f"  {problem.title}{mark}"))
+        inputs = (f"{one.name} = {one.format(one.default)}"
+                  for one in parameters_of(problem).values())  # fmt: skip
+        out.print(Text("    " + ", ".join(inputs)), soft_wrap=True)
