@@ -36,8 +36,8 @@ from workflows.verification.references.cylindrical_cavity import (
 )
 
 CHECKED_EXPANSIONS = (1.05, 1.2, 1.5, 2.0)
-TOLERANCE = 1e-8
-"""Relative residual; nearly incompressible soil leaves round-off of about a tenth of it."""
+ROUND_OFF, TOLERANCE = 1e-9, 1e-8
+"""Relative residuals; the pressure of nearly incompressible soil makes much of round-off."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +179,7 @@ def _compare(
         "Pressure in the cavity", "a / a0 (-)", "pressure / su (-)",
         tuple(ratio), tuple(pressure / su), tuple(exact / su),
     )  # fmt: skip
-    return Outcome(tuple(checks), (curve,), residual_histories=histories)
+    return Outcome(tuple(checks), (curve,), residual_histories=histories, round_off=ROUND_OFF)
 
 
 def cylindrical_ring(
