@@ -12,10 +12,16 @@ from workflows.verification.problem import Problem
 
 MODULES: tuple[str, ...] = (
     "cavity",
+    "circular_footing",
+    "deep_cylinder",
+    "flexible_load",
     "interface_shear",
+    "rigid_disc",
+    "shaft_friction",
     "sliding_block",
     "strip_footing_fe",
     "strip_footing_mpm",
+    "thick_cylinder",
 )
 """Files of this folder with a ``PROBLEM`` or ``PROBLEMS``, sorted."""
 

@@ -1,0 +1,41 @@
+"""PB2: smooth and rough rigid circular footing on weightless Tresca soil.
+
+Claimed: the load reaches a flat plateau, from above, with an error that falls with the element size
+at the footing's edge, and below 3 % on the finest mesh.
+"""
+
+import numpy as np
+import pytest
+
+from install_mpm.newton import convergence_order
+from workflows.verification import circular_footing
+from workflows.verification.circular_footing import PROBLEM
+
+pytestmark = [pytest.mark.dolfinx, pytest.mark.gmsh]
+
+
+def orders(outcome):
+    return np.array(
+        [convergence_order(np.array(history)) for history in outcome.residual_histories]
+    )
+
+
+@pytest.mark.slow
+def test_plateaus_are_those_of_the_exact_solution():
+    outcome = PROBLEM.run()
+    assert [check.quantity for check in outcome.checks if not check.is_met] == []
+    assert outcome.checks[0].reference == pytest.approx(5.689, abs=2e-3)
+    assert outcome.checks[4].reference == pytest.approx(6.048, abs=2e-3)
+    for study in outcome.series[1::2]:
+        assert (np.diff(study.computed) < 0.0).all()
+    assert np.nanmedian(orders(outcome)) >= 1.8
+
+
+def test_other_footing_on_two_coarse_meshes(monkeypatch):
+    """Another radius, strength and stiffness give the same factors; the trend shows already."""
+    monkeypatch.setattr(circular_footing, "SIZES", (0.05, 0.025))
+    outcome = PROBLEM.run(R=0.3, su=50e3, E_over_su=300.0, nu=0.48)
+    for errors in (outcome.series[1].computed, outcome.series[3].computed):
+        assert errors[1] < 0.7 * errors[0]
+        assert errors[1] < 0.05
+    assert np.nanmedian(orders(outcome)) >= 1.8

@@ -1,0 +1,200 @@
+"""Rigid circular footing on weightless clay, finite elements: 5.689 s_u smooth, 6.048 s_u rough.
+
+The exact mean pressure on Tresca soil comes from ``references.circular_footing``.  Von Mises soil,
+whose strength in the other modes is not the one in simple shear, has no such solution.  As under
+the strip, finite elements approach the limit load from above with an error of first order in the
+size of the elements at the singular edge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from install_mpm.constitutive.parameters import CoulombInterface, Tresca
+from install_mpm.conventions import Kinematics, Unit
+from install_mpm.ground import Ground
+from service_fe.load_step import Step
+from service_fe.options import ServiceNumerics
+from service_fe.problem import ServiceProblem, roller_supports
+from service_fe.rigid_pile import held
+from workflows.verification.problem import (
+    Check,
+    Outcome,
+    Problem,
+    Series,
+    at_least,
+    at_most,
+    relative,
+)
+from workflows.verification.references.circular_footing import circular_footing_pressure
+from workflows.verification.strip_footing_fe import footing_mesh
+
+SIZES = (0.05, 0.025, 0.0125)
+"""Edge length of the elements at the footing's edge over its diameter: a study of convergence."""
+
+SIZE_FAR = 0.35
+"""Edge length far away, over the diameter."""
+
+TOLERANCE = 0.03
+RELATIVE_SETTLEMENT = 40.0
+"""Final settlement times E / (2 s_u R); the plateau begins near 20."""
+
+
+@dataclass(frozen=True)
+class CircularFootingResult:
+    """Load-settlement curve of the footing."""
+
+    settlement: np.ndarray
+    """Settlement over diameter (step,)."""
+    bearing_factor: np.ndarray
+    """Mean pressure over shear strength (step,)."""
+    residuals: tuple[tuple[float, ...], ...]
+    """Relative residuals of each step."""
+
+    @property
+    def plateau(self) -> float:
+        """Bearing capacity factor at the end of the curve."""
+        return float(self.bearing_factor[-1])
+
+    @property
+    def slope(self) -> float:
+        """Relative change of the load over the last quarter of the curve."""
+        late = self.bearing_factor[self.settlement >= 0.75 * self.settlement[-1]]
+        return float(late[-1] / late[0] - 1.0)
+
+
+def circular_footing(
+    size_at_edge: float,
+    *,
+    is_rough: bool,
+    radius: float = 1.0,
+    undrained_shear_strength: float = 10e3,
+    rigidity_index: float = 1000.0,
+    poissons_ratio: float = 0.49,
+    steps: int = 24,
+) -> CircularFootingResult:
+    """Return the curve of a rigid footing that is pushed down in equal steps.
+
+    Parameters
+    ----------
+    size_at_edge
+        Edge length of the elements at the footing's edge over its diameter.
+    is_rough
+        The soil sticks to the footing; or it slides freely.
+    radius
+        Of the footing in m.
+    undrained_shear_strength
+        Shear strength in Pa.
+    rigidity_index
+        Young's modulus E over shear strength s_u; it only scales the settlement.
+    poissons_ratio
+        Below 0.5.
+    steps
+        Number of steps to ``RELATIVE_SETTLEMENT``.
+    """
+    diameter, strength = 2.0 * radius, undrained_shear_strength
+    mesh = footing_mesh(diameter, size_at_edge * diameter, SIZE_FAR * diameter)
+    r, z = mesh.nodes.T
+    under_footing = (np.abs(z) < 1e-9 * radius) & (r < (1.0 + 1e-9) * radius)
+    is_fixed = roller_supports(mesh)
+    is_fixed[under_footing, 1] = True
+    is_fixed[under_footing, 0] |= is_rough
+    problem = ServiceProblem(
+        mesh,
+        Ground(0.0, 1.0, Tresca(rigidity_index * strength, poissons_ratio, strength)),
+        CoulombInterface(1.0, 1.0),
+        numerics=ServiceNumerics(max_iterations=30),
+        is_fixed=is_fixed,
+        kinematics=Kinematics.AXISYMMETRIC,
+    )
+    settlement = RELATIVE_SETTLEMENT / rigidity_index
+    motion = np.zeros_like(mesh.nodes)
+    motion[under_footing, 1] = -settlement * diameter / steps
+    state, accepted = problem.wished_in_place_state(), list[Step]()
+    for _ in range(steps):
+        guess = accepted[-1].increment if accepted else None
+        accepted.append(problem.solve(state, held(), support_motion=motion, guess=guess))
+        state = accepted[-1].state
+    loads = np.array([-step.support_reaction[under_footing, 1].sum() for step in accepted])
+    return CircularFootingResult(
+        settlement=settlement * np.arange(1, steps + 1) / steps,
+        bearing_factor=loads / (np.pi * radius**2 * strength),
+        residuals=tuple(step.residuals for step in accepted),
+    )
+
+
+def pb2(
+    *,
+    R: Annotated[float, Unit("m")] = 1.0,
+    su: Annotated[float, Unit("Pa")] = 10e3,
+    E_over_su: float = 1000.0,
+    nu: float = 0.49,
+) -> Outcome:
+    """Smooth and rough rigid footings of radius R are pushed into weightless Tresca soil.
+
+    The finite elements of the service stage; the settlement is 80 su R / E.
+    """
+    checks: list[Check] = []
+    series: list[Series] = []
+    histories: list[tuple[float, ...]] = []
+    for name, is_rough in (("smooth", False), ("rough", True)):
+        exact = circular_footing_pressure(undrained_shear_strength=su, is_rough=is_rough) / su
+        results = [
+            circular_footing(
+                size,
+                is_rough=is_rough,
+                radius=R,
+                undrained_shear_strength=su,
+                rigidity_index=E_over_su,
+                poissons_ratio=nu,
+            )
+            for size in SIZES
+        ]
+        checks += _checks(name, results, exact)
+        series += _series(name, results, exact)
+        histories += [history for result in results for history in result.residuals]
+    return Outcome(tuple(checks), tuple(series), residual_histories=tuple(histories))
+
+
+def _checks(name: str, results: list[CircularFootingResult], exact: float) -> list[Check]:
+    coarse, fine = results[0], results[-1]
+    falls = abs((fine.plateau - exact) / (coarse.plateau - exact))
+    return [
+        relative(f"{name}: mean pressure / su on the finest mesh", fine.plateau, exact, TOLERANCE),
+        at_least(f"{name}: approached from above, finest mesh", fine.plateau, exact),
+        at_most(f"{name}: error of the finest over that of the coarsest mesh", falls, 0.6),
+        at_most(f"{name}: change of load over the last quarter", abs(fine.slope), 1e-3),
+    ]
+
+
+def _series(name: str, results: list[CircularFootingResult], exact: float) -> list[Series]:
+    fine = results[-1]
+    return [
+        Series(
+            f"{name} footing, finest mesh",
+            "settlement / 2R",
+            "mean pressure / su",
+            tuple(fine.settlement),
+            tuple(fine.bearing_factor),
+            tuple(np.full(len(fine.settlement), exact)),
+        ),
+        Series(
+            f"{name} footing, error of the bearing factor",
+            "size at the edge of the footing / 2R",
+            "relative error",
+            SIZES,
+            tuple(abs(result.plateau / exact - 1.0) for result in results),
+            is_logarithmic=True,
+        ),
+    ]
+
+
+PROBLEM = Problem(
+    "PB2-FE",
+    "Smooth and rough circular footing on Tresca soil, finite elements",
+    pb2,
+    is_quick=False,
+)
