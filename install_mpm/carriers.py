@@ -40,6 +40,8 @@ def give_state(
     if enriched is not changed:
         fill = fill_cells(enriched, mesh, model.cell, geometry, threshold)
     quadrature, is_empty = integration_points(enriched, model.cell, geometry, fill, gradient)
+    if model.has_weight_of_points:
+        quadrature = _with_weight_of(enriched, quadrature)
     return StepStart(
         enriched,
         fill,
@@ -95,6 +97,16 @@ def integration_points(
         state_variables=(state / own_volume[:, :, None]).reshape(own_volume.size, n_state),
         material=material.ravel(),
     ), is_empty & fill.is_active[:, None]
+
+
+def _with_weight_of(points: MaterialPoints, quadrature: IntegrationPoints) -> IntegrationPoints:
+    """Return the integration points with densities scaled to the mass of the points of each cell."""
+    per_cell = np.diff(quadrature.cell_start)
+    cell = np.repeat(np.arange(len(per_cell)), per_cell)
+    counted = np.bincount(cell, quadrature.density * quadrature.volume, len(per_cell))
+    mass = np.bincount(points.cell, points.mass, len(per_cell))
+    scale = mass / np.where(counted > 0.0, counted, 1.0)
+    return quadrature._replace(density=quadrature.density * scale[cell])
 
 
 def _density(mass: np.ndarray, volume: np.ndarray, is_empty: np.ndarray) -> np.ndarray:

@@ -42,6 +42,13 @@ class Discretisation(NamedTuple):
     scheme: Scheme = Scheme.CARRIERS
     is_cell_weighted: bool = False
     """With ``Scheme.QUADRATURE``: scale the volumes of the points of interior cells to the cell."""
+    has_weight_of_points: bool = False
+    """With ``Scheme.CARRIERS``: a cell weighs what its material points weigh, so that the supports
+    carry the weight of the body to round-off.
+
+    By default an interior cell weighs its volume times the density, so that undisturbed ground
+    stays in equilibrium however the points lie in the cells.
+    """
 
 
 class GeostaticGradient(NamedTuple):

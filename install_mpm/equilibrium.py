@@ -24,12 +24,14 @@ from install_mpm.pile import PileMotion, rigid_displacement
 
 
 class Prescribed(NamedTuple):
-    """Prescribed nodal displacements of a step: supports, and whatever else is driven."""
+    """Prescribed nodal displacements of a step, supports and whatever else is driven, and loads."""
 
     is_prescribed: np.ndarray
     """(n_nodes, dim) bool."""
     displacement: np.ndarray
     """(n_nodes, dim) in m."""
+    force: np.ndarray | None = None
+    """Dead nodal load at the end of the step beside the weight, (n_nodes, dim) in N; None: none."""
 
 
 class StepEquilibrium(NamedTuple):
@@ -160,6 +162,8 @@ class _StepSystem:
         self.external = np.zeros((n_nodes, dim))
         self.out_of_balance = np.zeros((n_nodes, dim))
         body_force(model.cell.cell_type, mesh.cell_nodes, points, GRAVITY, self.external)
+        if prescribed.force is not None:
+            self.external += prescribed.force
         is_held = np.zeros(n_nodes, dtype=bool)
         is_held[mesh.cell_nodes[fill.is_active]] = True
         self.is_free = is_held[:, None] & ~prescribed.is_prescribed

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from install_mpm import carriers
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises
 from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground, geostatic_stress
@@ -196,3 +197,33 @@ def test_results_do_not_depend_on_the_number_of_threads(make_column, clay_ground
         results.append([*result.points, result.equilibrium.displacement])
     for first, second in zip(*results, strict=True):
         np.testing.assert_array_equal(first, second)
+
+
+def test_nodal_force_acts_as_the_weight_does(make_column):
+    """A force on the top of a weightless elastic column arrives at the base, and squeezes it."""
+    column = make_column(Ground(0.0, 1.0, HenckyElastic(5e6, 0.0)), tolerance=1e-12)
+    mesh = column.mesh
+    top = mesh.nodes[:, 1].max()
+    force = np.zeros_like(mesh.nodes)
+    for x, share in ((0.0, 1 / 6), (0.25, 2 / 3), (0.5, 1 / 3), (0.75, 2 / 3), (1.0, 1 / 3),
+                     (1.25, 2 / 3), (1.5, 1 / 6)):  # fmt: skip
+        node = np.argmin(np.linalg.norm(mesh.nodes - [x, top], axis=1))
+        force[node, 1] = -1e3 * 0.5 * share
+    prescribed = Prescribed(column.supports, np.zeros_like(mesh.nodes), force)
+    result = column.step(column.points(), mesh, prescribed)
+    assert result.is_converged
+    assert result.equilibrium.reaction[:, 1].sum() == pytest.approx(1.5e3, rel=1e-10)
+    stress = cauchy_stress(result.points)
+    np.testing.assert_allclose(stress[:, 1, 1], -1e3, rtol=1e-9)
+
+
+def test_weight_of_points_is_that_of_the_body(make_column, clay_ground, rng):
+    """Cells of scattered points weigh what the points weigh, cell by cell."""
+    column = make_column(clay_ground)
+    points = column.points()
+    points = points._replace(mass=points.mass * rng.uniform(0.5, 1.5, len(points.mass)))
+    model = column.model._replace(has_weight_of_points=True)
+    quadrature = carriers.give_state(points, column.mesh, model, column.gradient).quadrature
+    weight = (quadrature.density * quadrature.volume).reshape(len(column.mesh.cell_nodes), -1)
+    expected = np.bincount(points.cell, points.mass, len(weight))
+    np.testing.assert_allclose(weight.sum(axis=1), expected, rtol=1e-12)
