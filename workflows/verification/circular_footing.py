@@ -8,14 +8,18 @@ size of the elements at the singular edge.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated
 
 import numpy as np
 
+from handoff.fe_mesh import FEMesh
 from install_mpm.constitutive.parameters import CoulombInterface, Tresca
 from install_mpm.conventions import Kinematics, Unit
 from install_mpm.ground import Ground
+from install_mpm.newton import ROUND_OFF
 from service_fe.load_step import Step
 from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem, roller_supports
@@ -97,11 +101,7 @@ def circular_footing(
     """
     diameter, strength = 2.0 * radius, undrained_shear_strength
     mesh = footing_mesh(diameter, size_at_edge * diameter, SIZE_FAR * diameter)
-    r, z = mesh.nodes.T
-    under_footing = (np.abs(z) < 1e-9 * radius) & (r < (1.0 + 1e-9) * radius)
-    is_fixed = roller_supports(mesh)
-    is_fixed[under_footing, 1] = True
-    is_fixed[under_footing, 0] |= is_rough
+    is_fixed, under_footing = footing_supports(mesh, radius, is_rough=is_rough)
     problem = ServiceProblem(
         mesh,
         Ground(0.0, 1.0, Tresca(rigidity_index * strength, poissons_ratio, strength)),
@@ -126,7 +126,19 @@ def circular_footing(
     )
 
 
-def pb2(
+def footing_supports(
+    mesh: FEMesh, radius: float, *, is_rough: bool
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the supports (node, 2) bool of ground and footing, and the nodes under the footing."""
+    r, z = mesh.nodes.T
+    under_footing = (np.abs(z) < 1e-9 * radius) & (r < (1.0 + 1e-9) * radius)
+    is_fixed = roller_supports(mesh)
+    is_fixed[under_footing, 1] = True
+    is_fixed[under_footing, 0] |= is_rough
+    return is_fixed, under_footing
+
+
+def pb2_fe(
     *,
     R: Annotated[float, Unit("m")] = 1.0,
     su: Annotated[float, Unit("Pa")] = 10e3,
@@ -137,26 +149,39 @@ def pb2(
 
     The finite elements of the service stage; the settlement is 80 su R / E.
     """
+    footing = partial(
+        circular_footing,
+        radius=R,
+        undrained_shear_strength=su,
+        rigidity_index=E_over_su,
+        poissons_ratio=nu,
+    )
+    return outcome(footing, su)
+
+
+def outcome(
+    footing: Callable[..., CircularFootingResult],
+    undrained_shear_strength: float,
+    round_off: float = ROUND_OFF,
+) -> Outcome:
+    """Return the outcome of smooth and rough footings ``footing(size, is_rough=...)``."""
     checks: list[Check] = []
     series: list[Series] = []
     histories: list[tuple[float, ...]] = []
     for name, is_rough in (("smooth", False), ("rough", True)):
-        exact = circular_footing_pressure(undrained_shear_strength=su, is_rough=is_rough) / su
-        results = [
-            circular_footing(
-                size,
-                is_rough=is_rough,
-                radius=R,
-                undrained_shear_strength=su,
-                rigidity_index=E_over_su,
-                poissons_ratio=nu,
+        exact = (
+            circular_footing_pressure(
+                undrained_shear_strength=undrained_shear_strength, is_rough=is_rough
             )
-            for size in SIZES
-        ]
+            / undrained_shear_strength
+        )
+        results = [footing(size, is_rough=is_rough) for size in SIZES]
         checks += _checks(name, results, exact)
         series += _series(name, results, exact)
         histories += [history for result in results for history in result.residuals]
-    return Outcome(tuple(checks), tuple(series), residual_histories=tuple(histories))
+    return Outcome(
+        tuple(checks), tuple(series), residual_histories=tuple(histories), round_off=round_off
+    )
 
 
 def _checks(name: str, results: list[CircularFootingResult], exact: float) -> list[Check]:
@@ -195,6 +220,6 @@ def _series(name: str, results: list[CircularFootingResult], exact: float) -> li
 PROBLEM = Problem(
     "PB2-FE",
     "Smooth and rough circular footing on Tresca soil, finite elements",
-    pb2,
+    pb2_fe,
     is_quick=False,
 )
