@@ -24,7 +24,7 @@ from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.mesh_motion import translate
 from install_mpm.newton import convergence_order
 from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
-from install_mpm.pile import SYMMETRY_FACTOR, Pile, PileMotion, PilePart, buried_weight
+from install_mpm.pile import WHOLE_PILE, Pile, PileMotion, PilePart, buried_weight
 from install_mpm.seeding import geostatic_gradient, seed_points
 from install_mpm.state_file import InstalledState, PileState, StepControl
 from install_mpm.step import StepResult, step
@@ -83,12 +83,14 @@ def install(
     numerics: Numerics,
     case_text: str,
     *,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
     resume_from: InstalledState | None = None,
     observe: Observer = lambda state, progress: None,
 ) -> InstalledState:
     """Return the ground and the pile after installation.
 
     The first step moves nothing: it shows that the geostatic start is in equilibrium.
+    Under axisymmetric ``kinematics`` the pile is round and its forces are those of all of it.
     ``resume_from`` is a state of the same case that an observer was given; the result is then
     bit-equal to that of an uninterrupted run.
 
@@ -101,23 +103,23 @@ def install(
     if resume_from is None:
         mesh = generate_background_mesh(pile, box, mesh_options)
     else:
-        mesh = resume_from.background_mesh
-    problem = _set_up(ground, pile, law, box, mesh_options, programme, numerics, mesh)
+        mesh, kinematics = resume_from.background_mesh, resume_from.kinematics
+    problem = set_up(ground, pile, law, box, mesh_options, programme, numerics, mesh, kinematics)
     if resume_from is None:
         state = _geostatic_state(problem, mesh, mesh_options.points_per_direction, case_text)
-        state, accepted = _advance(problem, state, 0.0)
+        state, accepted = advance_pile(problem, state, 0.0)
         _check_start(state, accepted)
         observe(state, _progress(problem, state))
     else:
         state = resume_from
     while float(state.pile.penetration) < programme.penetration - ON_BOUNDARY:
-        state, accepted = _advance(problem, state, _next_step(problem, state))
+        state, accepted = advance_pile(problem, state, _next_step(problem, state))
         if accepted:
             observe(state, _progress(problem, state))
     return state
 
 
-def _set_up(
+def set_up(
     ground: Ground,
     pile: Pile,
     law: CoulombInterface,
@@ -126,6 +128,7 @@ def _set_up(
     programme: InstallationProgramme,
     numerics: Numerics,
     mesh: BackgroundMesh,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> Installation:
     """Return the problem on a given mesh: interface, sparsity, solver and supports."""
     elements, parts = pile_surface.pile_elements(mesh, pile)
@@ -137,6 +140,7 @@ def _set_up(
         pattern=pattern,
         solve=SOLVERS[numerics.linear_solver](pattern),
         numerics=numerics,
+        kinematics=kinematics,
     )
     return Installation(
         ground, pile, law, box, mesh_options.rigid_zone, programme, numerics, model, parts,
@@ -161,12 +165,14 @@ def _geostatic_state(
     problem: Installation, mesh: BackgroundMesh, per_direction: int, case_text: str
 ) -> InstalledState:
     """Return the undisturbed ground with the pile wished in place at its starting depth."""
-    elements = problem.model.elements
+    model = problem.model
     interface = pile_surface.initial_interface(
-        elements, problem.parts, mesh, problem.ground, problem.law
+        model.elements, problem.parts, mesh, problem.ground, problem.law, model.kinematics
     )
     return InstalledState(
-        material_points=seed_points(mesh, problem.model.cell, problem.ground, per_direction),
+        material_points=seed_points(
+            mesh, model.cell, problem.ground, per_direction, kinematics=model.kinematics
+        ),
         background_mesh=mesh,
         interface=interface,
         pile=PileState(np.array(0.0), np.array(0.0), np.array(problem.pile.embedment), np.zeros(2)),
@@ -175,7 +181,7 @@ def _geostatic_state(
             np.array(problem.programme.step), np.array(0), np.array(0), np.zeros_like(mesh.nodes)
         ),
         case_text=case_text,
-        kinematics=Kinematics.PLANE_STRAIN,
+        kinematics=model.kinematics,
     )
 
 
@@ -201,12 +207,12 @@ def _next_step(problem: Installation, state: InstalledState) -> float:
     return left if left < size * (1.0 + 1e-9) else size
 
 
-def _advance(
+def advance_pile(
     problem: Installation, state: InstalledState, advance: float
 ) -> tuple[InstalledState, bool]:
-    """Try one step; return the new state, or the old one with half the step size.
+    """Try one step of ``advance`` in m, negative upward.
 
-    And whether it was accepted.
+    Return the new state, or the old one with half the step size; and whether it was accepted.
     """
     control = state.control
     penetration = float(state.pile.penetration) + advance
@@ -266,8 +272,9 @@ def _accept(
     """Return the state after a converged step, with its row of the history."""
     control = state.control
     interface = pile_surface.follow(
-        result.interface, problem.model.elements, result.mesh, problem.ground, problem.law
-    )
+        result.interface, problem.model.elements, result.mesh, problem.ground, problem.law,
+        problem.model.kinematics,
+    )  # fmt: skip
     penetration = float(state.pile.penetration) + advance
     tip_depth = problem.pile.embedment + penetration
     force = reaction(result.interface)
@@ -303,11 +310,14 @@ def _history_row(
     on_base = result.interface.part == PilePart.BASE
     base = reaction(result.interface, on_base)[1]
     shaft = reaction(result.interface, ~on_base)[1]
+    kinematics = problem.model.kinematics
+    whole = WHOLE_PILE[kinematics]
+    weight = buried_weight(problem.pile, tip_depth, kinematics)
     return {
         "penetration": penetration,
-        "crowd_force": SYMMETRY_FACTOR * (base + shaft - buried_weight(problem.pile, tip_depth)),
-        "base_force": SYMMETRY_FACTOR * base,
-        "shaft_force": SYMMETRY_FACTOR * shaft,
+        "crowd_force": whole * (base + shaft - weight),
+        "base_force": whole * base,
+        "shaft_force": whole * shaft,
         "iterations": len(newton.residuals) - 1,
         "residual": newton.residuals[-1],
         "convergence_order": convergence_order(newton.residuals),

@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from annotated_types import Ge, Gt
 
-from install_mpm.conventions import Unit
+from install_mpm.conventions import Kinematics, Unit
 
 
 class PilePart(IntEnum):
@@ -21,9 +21,9 @@ class PilePart(IntEnum):
 
 @dataclass(frozen=True)
 class Pile:
-    """Flat-ended pile of a plane-strain half model.
+    """Flat-ended pile of a half model: a wall in plane strain, round in axisymmetry.
 
-    X <= half_width, from its tip up through the surface.
+    X or r <= half_width, from its tip up through the surface.
 
     ``embedment`` is the depth of the tip at the start, at which the pile is wished in place.
     """
@@ -38,6 +38,9 @@ SYMMETRY_FACTOR = 2.0
 
 Histories, curves and reports are for the whole pile, per metre run.
 """
+
+WHOLE_PILE = {Kinematics.PLANE_STRAIN: SYMMETRY_FACTOR, Kinematics.AXISYMMETRIC: 1.0}
+"""Whole pile over what the forces of a model stand for: axisymmetric forces are those of all."""
 
 
 def surface_normals(part: np.ndarray) -> np.ndarray:
@@ -59,9 +62,16 @@ def tangent_of(normals: np.ndarray) -> np.ndarray:
     return np.column_stack([-normals[:, 1], normals[:, 0]])
 
 
-def buried_weight(pile: Pile, tip_depth: float) -> float:
-    """Return the weight in N per metre run of the modelled half of the pile below the surface."""
-    return pile.unit_weight * pile.half_width * tip_depth
+def buried_weight(
+    pile: Pile, tip_depth: float, kinematics: Kinematics = Kinematics.PLANE_STRAIN
+) -> float:
+    """Return the weight in N below the surface: of the half wall per metre run, or all of the pile.
+
+    The latter in axisymmetry, where forces are those of the whole pile.
+    """
+    is_round = kinematics == Kinematics.AXISYMMETRIC
+    area = np.pi * pile.half_width**2 if is_round else pile.half_width
+    return pile.unit_weight * float(area) * tip_depth
 
 
 class PileMotion(NamedTuple):

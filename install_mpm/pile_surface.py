@@ -10,6 +10,7 @@ import numpy as np
 from install_mpm.background_mesh import BackgroundMesh, facets_opposite_vertices
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground, geostatic_stress, undrained_shear_strength
 from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule, frames
 from install_mpm.pile import Pile, PilePart, surface_normals
@@ -45,13 +46,22 @@ def pile_elements(mesh: BackgroundMesh, pile: Pile) -> tuple[InterfaceElements, 
 
 
 def place_points(
-    elements: InterfaceElements, mesh: BackgroundMesh
+    elements: InterfaceElements,
+    mesh: BackgroundMesh,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return position (n, 2) in m and area (n,) in m^2 per metre run of the interface points."""
+    """Return position (n, 2) in m and area (n,) in m^2 of the interface points.
+
+    The area is per metre run, or around the whole circumference in axisymmetry.
+    """
     corners = mesh.nodes[elements.nodes]
     position = np.einsum("qa,eai->eqi", elements.shape_values, corners)
+    position = position.reshape(-1, mesh.nodes.shape[1])
     length = np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1)
-    return position.reshape(-1, mesh.nodes.shape[1]), np.outer(length, elements.weights).ravel()
+    area = np.outer(length, elements.weights).ravel()
+    if kinematics == Kinematics.AXISYMMETRIC:
+        area *= 2.0 * np.pi * position[:, 0]
+    return position, area
 
 
 def initial_interface(
@@ -60,9 +70,10 @@ def initial_interface(
     mesh: BackgroundMesh,
     ground: Ground,
     law: CoulombInterface,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> InterfacePoints:
     """Return the interface of a pile wished in place: the geostatic traction acts on it."""
-    position, area = place_points(elements, mesh)
+    position, area = place_points(elements, mesh, kinematics)
     part = np.repeat(parts, len(elements.weights))
     normal = surface_normals(part)
     return InterfacePoints(
@@ -90,12 +101,13 @@ def follow(
     mesh: BackgroundMesh,
     ground: Ground,
     law: CoulombInterface,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> InterfacePoints:
     """Return the interface at its place on the moved mesh.
 
     The adhesion is that of the ground at its level.
     """
-    position, area = place_points(elements, mesh)
+    position, area = place_points(elements, mesh, kinematics)
     strength = undrained_shear_strength(ground, position[:, -1])
     return interface._replace(
         position=position, area=area, parameters=coulomb_interface.pack(law, strength)

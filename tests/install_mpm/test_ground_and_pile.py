@@ -12,6 +12,7 @@ from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.mesh_motion import translate
 from install_mpm.pile import (
     SYMMETRY_FACTOR,
+    WHOLE_PILE,
     Pile,
     PilePart,
     buried_weight,
@@ -134,6 +135,13 @@ def test_weight_of_the_modelled_half():
     assert SYMMETRY_FACTOR == 2.0
 
 
+def test_weight_of_a_round_pile():
+    pile = Pile(half_width=0.5, embedment=2.0, unit_weight=20e3)
+    weight = buried_weight(pile, 3.0, Kinematics.AXISYMMETRIC)
+    assert weight == pytest.approx(20e3 * np.pi * 0.25 * 3.0)
+    assert WHOLE_PILE[Kinematics.AXISYMMETRIC] == 1.0
+
+
 @pytest.mark.gmsh
 def test_pile_surface_is_found_completely(mesh, pile, box):
     """Base first, then the shaft up to the top of the mesh; facets belong to the cells beside."""
@@ -164,6 +172,17 @@ def test_areas_add_up_to_the_perimeter(mesh, pile, box):
     assert area[buried].sum() == pytest.approx(pile.embedment, rel=1e-12)
     centroid = area[buried] @ position[buried, 1] / area[buried].sum()
     assert centroid == pytest.approx(-pile.embedment / 2.0, rel=1e-12)
+
+
+@pytest.mark.gmsh
+def test_areas_of_a_round_pile_go_around_it(mesh, pile, box):
+    elements, parts = pile_elements(mesh, pile)
+    _, area = place_points(elements, mesh, Kinematics.AXISYMMETRIC)
+    part = np.repeat(parts, 3)
+    base, circumference = np.pi * pile.half_width**2, 2.0 * np.pi * pile.half_width
+    assert area[part == PilePart.BASE].sum() == pytest.approx(base, rel=1e-12)
+    shaft = circumference * (pile.embedment + box.headroom)
+    assert area[part == PilePart.SHAFT].sum() == pytest.approx(shaft, rel=1e-12)
 
 
 @pytest.mark.gmsh

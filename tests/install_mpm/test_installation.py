@@ -39,6 +39,7 @@ def run(pile, box):
         rigid_zone=0.25,
         numerics=DEFAULTS,
         resume_from=None,
+        kinematics=Kinematics.PLANE_STRAIN,
     ):
         states, told = [], []
 
@@ -49,7 +50,7 @@ def run(pile, box):
         state = install(
             ground, own_pile, LAW, box, BackgroundMeshOptions(0.25, 1.0, rigid_zone),
             InstallationProgramme(penetration, step), numerics, CASE_TEXT,
-            resume_from=resume_from, observe=observe,
+            resume_from=resume_from, observe=observe, kinematics=kinematics,
         )  # fmt: skip
         return SimpleNamespace(state=state, states=states, told=told)
 
@@ -308,6 +309,22 @@ def test_solvers_agree(run, short):
     other = run(0.04, numerics=Numerics(linear_solver="superlu")).state
     expected = short.states[2].history.crowd_force
     np.testing.assert_allclose(other.history.crowd_force, expected, rtol=1e-6, atol=1e-3)
+
+
+def test_round_pile_in_axisymmetry(run, pile):
+    """Forces are those of the whole pile: adhesion on the shaft, bearing capacity of a circle."""
+    ground = Ground(0.0, 1.0, CLAY.soil)
+    result = run(0.06, ground=ground, kinematics=Kinematics.AXISYMMETRIC)
+    history, radius = result.state.history, pile.half_width
+    assert result.state.kinematics == Kinematics.AXISYMMETRIC
+    adhesion = 2.0 * np.pi * radius * 10e3 * (2.0 + history.penetration[1:])
+    np.testing.assert_allclose(history.shaft_force[1:], adhesion, rtol=0.1)
+    assert 5.0 < history.base_force[-1] / (np.pi * radius**2 * 20e3) < 14.0
+    weight = np.pi * radius**2 * pile.unit_weight * (2.0 + history.penetration)
+    total = history.base_force + history.shaft_force
+    np.testing.assert_allclose(history.crowd_force, total - weight, rtol=1e-12, atol=1e-6)
+    resumed = run(0.06, ground=ground, resume_from=result.states[1])
+    assert_bit_equal(result.state, resumed.state)
 
 
 def test_cell_volumes_add_up_to_the_box(short):
