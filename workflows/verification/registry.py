@@ -11,6 +11,7 @@ from workflows.errors import CaseError
 from workflows.verification.problem import Problem
 
 MODULES: tuple[str, ...] = (
+    "reload",
     "cavity",
     "circular_footing",
     "deep_cylinder",
