@@ -100,7 +100,7 @@ def integration_points(
 
 
 def _with_weight_of(points: MaterialPoints, quadrature: IntegrationPoints) -> IntegrationPoints:
-    """Return the integration points with densities scaled to the mass of the points of each cell."""
+    """Return the integration points with densities scaled to the mass of each cell's points."""
     per_cell = np.diff(quadrature.cell_start)
     cell = np.repeat(np.arange(len(per_cell)), per_cell)
     counted = np.bincount(cell, quadrature.density * quadrature.volume, len(per_cell))

@@ -11,9 +11,11 @@ from workflows.errors import CaseError
 from workflows.verification.problem import Problem
 
 MODULES: tuple[str, ...] = (
+    "ample_column",
     "reload",
     "cavity",
     "circular_footing",
+    "column",
     "deep_cylinder",
     "flexible_load",
     "interface_shear",
