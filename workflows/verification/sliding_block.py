@@ -160,7 +160,7 @@ def pa15(
     checks = [check for name, result in results.items() for check in _checks(name, result, N)]
     return Outcome(
         checks=tuple(checks),
-        series=tuple(_curve(name, result) for name, result in results.items()),
+        series=_curves(results["dilation"]),
         residual_histories=tuple(
             tuple(history) for result in results.values() for history in result.residuals
         ),
@@ -183,14 +183,13 @@ def _checks(name: str, result: SlidingBlockResult, weight: float) -> tuple[Check
     )  # fmt: skip
 
 
-def _curve(name: str, result: SlidingBlockResult) -> Series:
-    return Series(
-        f"{name}: pull",
-        "displacement, m",
-        "pull, N/m",
-        tuple(result.displacement),
-        tuple(result.force),
-        tuple(result.exact),
+def _curves(result: SlidingBlockResult) -> tuple[Series, ...]:
+    """Return pull and climb of the block with dilation."""
+    x, axis = tuple(result.displacement), "displacement, m"
+    force, climb = tuple(result.force), tuple(result.climb)
+    return (
+        Series("pull", axis, "pull, N/m", x, force, tuple(result.exact)),
+        Series("climb with dilation", axis, "climb, m", x, climb, tuple(result.exact_climb)),
     )
 
 
