@@ -327,6 +327,15 @@ def test_round_pile_in_axisymmetry(run, pile):
     assert_bit_equal(result.state, resumed.state)
 
 
+def test_round_pile_in_heavy_ground_starts_with_hardly_any_load(run, pile):
+    """The first step evens out what the integration rule leaves of weight times radius."""
+    history = run(0.0, kinematics=Kinematics.AXISYMMETRIC).state.history
+    weight = np.pi * pile.half_width**2 * 2.0 * 18e3
+    assert 1e-8 < history.residual_history[0, 0] < 1e-3
+    assert abs(history.crowd_force[0]) < 1e-3 * weight
+    assert history.base_force[0] == pytest.approx(weight, rel=1e-3)
+
+
 def test_cell_volumes_add_up_to_the_box(short):
     geometry = cell_geometry(
         short.state.background_mesh, reference_cell(CellType.TRI6), Kinematics.PLANE_STRAIN
