@@ -11,6 +11,7 @@ from workflows.errors import CaseError
 from workflows.verification.problem import Problem
 
 MODULES: tuple[str, ...] = (
+    "ample_collapse",
     "ample_column",
     "reload",
     "cavity",
