@@ -29,8 +29,9 @@ from workflows.verification.circular_footing import (
 from workflows.verification.problem import Outcome, Problem
 from workflows.verification.strip_footing_fe import footing_mesh
 
-ROUND_OFF = 1e-9
-"""Relative residual at which the rigidity index of 20,000 leaves nothing to gain."""
+ROUND_OFF = 5e-9
+"""Relative residual that further iterations do not lower, at the rigidity index of 20,000: 1e-9 in
+late steps, 4e-9 in the first."""
 
 
 def circular_footing(

@@ -16,6 +16,7 @@ MODULES: tuple[str, ...] = (
     "reload",
     "cavity",
     "circular_footing",
+    "circular_footing_mpm",
     "column",
     "deep_cylinder",
     "flexible_load",
