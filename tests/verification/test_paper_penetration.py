@@ -10,7 +10,13 @@ import pytest
 
 from install_mpm.discretisation import Scheme
 from install_mpm.newton import convergence_order
-from workflows.verification.paper_penetration import fig6, fig6_default, fig8, work_and_energy
+from workflows.verification.paper_penetration import (
+    fig6,
+    fig6_default,
+    fig6_friction,
+    fig8,
+    work_and_energy,
+)
 from workflows.verification.penetration import Penetration, penetrate
 from workflows.verification.references import prototype
 
@@ -59,6 +65,14 @@ def test_first_steps_of_the_default_discretisation_lose_no_energy():
     assert energy == pytest.approx(work, rel=5e-3)
 
 
+def test_first_steps_with_friction():
+    outcome = fig6_friction(penetration=0.2, h_coarse=1.0, h_fine=0.5)
+    checks = {check.quantity: check for check in outcome.checks}
+    coarse = checks.pop("reaction on the coarse mesh against the fine, N/m")
+    assert abs(coarse.error) < 0.1
+    assert all(check.is_met for check in checks.values())
+
+
 def test_the_two_discretisations_agree_while_cells_are_little_deformed():
     default = penetrate(Penetration(steps=3, scheme=Scheme.CARRIERS)).reaction
     paper = penetrate(Penetration(steps=3)).reaction
@@ -66,7 +80,7 @@ def test_the_two_discretisations_agree_while_cells_are_little_deformed():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("run", [fig6, fig6_default, fig8])
+@pytest.mark.parametrize("run", [fig6, fig6_default, fig8, fig6_friction])
 def test_four_metres(run):
     assert_all_met(run())
 

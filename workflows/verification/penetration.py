@@ -6,14 +6,14 @@ without weight; the rigid pile fills x < half_width above its tip and moves down
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from install_mpm import interface as interfaces
 from install_mpm.background_mesh import BackgroundMesh
-from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic
+from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic, NeoHookean
 from install_mpm.discretisation import Scheme
 from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground
@@ -60,6 +60,8 @@ class Penetration:
 
     ``CARRIERS``: six-node cells, as the installation stage uses them.
     """
+    is_neo_hookean: bool = False
+    """Neo-Hookean soil; Hencky's loses ellipticity where its logarithmic strain exceeds one."""
     headroom: float = 0.0
     """Empty mesh above the surface."""
     max_cuts: int = 6
@@ -67,7 +69,8 @@ class Penetration:
     @property
     def ground(self) -> Ground:
         """Weightless elastic ground."""
-        return Ground(0.0, 1.0, HenckyElastic(self.youngs_modulus, self.poissons_ratio))
+        law = NeoHookean if self.is_neo_hookean else HenckyElastic
+        return Ground(0.0, 1.0, law(self.youngs_modulus, self.poissons_ratio))
 
     @property
     def pile(self) -> Pile:
@@ -234,8 +237,3 @@ def _supports(
         is_prescribed[on_pile] = True
         displacement[on_pile, 1] = -advance_by
     return Prescribed(is_prescribed, displacement), on_pile
-
-
-def coarser(problem: Penetration, factor: float) -> Penetration:
-    """Return the problem on cells ``factor`` times as large."""
-    return replace(problem, size=factor * problem.size)
