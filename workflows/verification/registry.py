@@ -21,6 +21,7 @@ MODULES: tuple[str, ...] = (
     "deep_cylinder",
     "flexible_load",
     "interface_shear",
+    "paper_penetration",
     "rigid_disc",
     "shaft_friction",
     "sliding_block",
