@@ -99,7 +99,7 @@ def pb2_mpm(
 
 
 PROBLEM = Problem(
-    "PB2-MPM",
+    "PB2",
     "Smooth and rough circular footing on Tresca soil, material points",
     pb2_mpm,
     is_quick=False,

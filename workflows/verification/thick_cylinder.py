@@ -26,7 +26,7 @@ from workflows.verification.revolution import quadratic
 CELLS = (5, 10, 20)
 """Cells across the wall: a study of convergence."""
 
-STEPS = 30
+STEPS = 20
 TOLERANCE = 0.01
 
 
