@@ -68,10 +68,7 @@ def youngs_modulus(materials: Materials) -> np.ndarray:
 
 
 def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisation) -> CellOptions:
-    """Return the stiffnesses that act within a step only.
-
-    Volumetric term and soft partly filled cells.
-    """
+    """Return the stiffnesses of this step only: volumetric term and softly held cells."""
     n_per_cell = len(model.cell.volume_shares)
     modulus = youngs_modulus(model.materials)[points.material[points.cell_start[:-1]]]
     counted = np.add.reduceat(points.volume, points.cell_start[:-1]) / fill.cell_volume

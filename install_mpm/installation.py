@@ -146,10 +146,7 @@ def _set_up(
 
 
 def _supports(mesh: BackgroundMesh, box: Box) -> np.ndarray:
-    """Return which dofs are held, (n_nodes, 2) bool.
-
-    Rollers on symmetry axis and side, fixed bottom.
-    """
+    """Return which dofs are held, (n_nodes, 2): rollers on axis and side, fixed bottom."""
     x, z = mesh.reference_nodes.T
     is_held = np.zeros(mesh.nodes.shape, dtype=bool)
     is_held[:, 0] = (np.abs(x) < ON_BOUNDARY) | (np.abs(x - box.width) < ON_BOUNDARY)
@@ -204,10 +201,7 @@ def _next_step(problem: Installation, state: InstalledState) -> float:
 def _advance(
     problem: Installation, state: InstalledState, advance: float
 ) -> tuple[InstalledState, bool]:
-    """Try one step; return the new state, or the old one with half the step size.
-
-    And whether it was accepted.
-    """
+    """Try a step of ``advance`` in m; return the state after it and True, or cut and False."""
     control = state.control
     penetration = float(state.pile.penetration) + advance
     scale = advance / float(control.step) if advance else 0.0

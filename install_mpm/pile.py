@@ -34,17 +34,11 @@ class Pile:
 
 
 SYMMETRY_FACTOR = 2.0
-"""Whole pile over modelled half.
-
-Histories, curves and reports are for the whole pile, per metre run.
-"""
+"""Whole pile over modelled half; histories, curves and reports are for the whole."""
 
 
 def surface_normals(part: np.ndarray) -> np.ndarray:
-    """Return the exact unit normals (n, 2), from soil to pile.
-
-    Of interface points on ``part`` (n,).
-    """
+    """Return the exact unit normals (n, 2), from soil to pile, of points on ``part`` (n,)."""
     normals = np.zeros((len(part), 2))
     normals[part == PilePart.BASE] = (0.0, 1.0)
     normals[part == PilePart.SHAFT] = (-1.0, 0.0)
@@ -52,10 +46,7 @@ def surface_normals(part: np.ndarray) -> np.ndarray:
 
 
 def tangent_of(normals: np.ndarray) -> np.ndarray:
-    """Return the unit tangents (n, 2): the normals turned by +90 degrees.
-
-    On the shaft they point down.
-    """
+    """Return the tangents (n, 2): normals turned by +90 degrees, pointing down on the shaft."""
     return np.column_stack([-normals[:, 1], normals[:, 0]])
 
 
@@ -65,10 +56,7 @@ def buried_weight(pile: Pile, tip_depth: float) -> float:
 
 
 class PileMotion(NamedTuple):
-    """Rigid motion of the pile in a step: a translation.
-
-    Then a rotation about the origin (2D: about +y out of page).
-    """
+    """Rigid motion of the pile in a step: a rotation about the origin, and a translation."""
 
     translation: np.ndarray
     """(dim,) in m."""

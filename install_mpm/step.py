@@ -30,10 +30,7 @@ from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import PileMotion
 
 LEVEL_FILL = 0.4
-"""Fill of a vertex from which on the facets below it count as covered.
-
-On a level surface it is about one half.
-"""
+"""Fill of a vertex above which its facets count as covered; about 1/2 at a level surface."""
 
 
 class StepCounts(NamedTuple):
@@ -133,10 +130,7 @@ def carry(
     model: Discretisation,
     gradient: GeostaticGradient,
 ) -> tuple[MaterialPoints, bool]:
-    """Return the material points after the displacement of the step.
-
-    And whether all of them are sound.
-    """
+    """Return the material points after the step, and whether all of them are sound."""
     updated = MaterialPoints(*(np.array(field) for field in points))
     status = np.zeros(len(mesh.cell_nodes), dtype=np.int64)
     carry_points(
@@ -148,10 +142,7 @@ def carry(
 
 
 def locate(points: MaterialPoints, mesh: BackgroundMesh) -> int:
-    """Find the cell of every point, in place.
-
-    Return how many had to be brought back from outside the mesh.
-    """
+    """Find the cell of every point, in place; return how many were brought back into the mesh."""
     status, before = np.zeros(len(points.cell), dtype=np.int64), points.position.copy()
     locate_points(
         mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours, points.position, points.cell,

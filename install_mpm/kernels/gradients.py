@@ -32,10 +32,7 @@ def shape_gradients(cell_type, xi, nodes, vertex_nodes, reference, gradients):
 
 @jit
 def displacement_gradient(displacement, cell_nodes, gradients, gradient):
-    """Fill ``gradient`` (3, 3) with du_i/dx_j from nodal ``displacement`` (n, dim).
-
-    Out-of-plane terms are zero.
-    """
+    """Fill ``gradient`` (3, 3) with du_i/dx_j of nodal ``displacement``, zero out of plane."""
     gradient[:, :] = 0.0
     dim = gradients.shape[1]
     for a in range(cell_nodes.shape[0]):
