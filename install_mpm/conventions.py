@@ -58,8 +58,5 @@ CONVENTIONS = (
 
 
 def conventions_hash() -> str:
-    """Return the hash that a state file carries.
-
-    So that a change of convention cannot go unnoticed.
-    """
+    """Return the hash by which a state file betrays that a convention has changed since."""
     return hashlib.sha256("\n".join(CONVENTIONS).encode()).hexdigest()[:16]

@@ -56,10 +56,7 @@ def youngs_modulus(materials: Materials) -> np.ndarray:
 
 
 def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisation) -> CellOptions:
-    """Return the stiffnesses that act within a step only.
-
-    Volumetric term and soft partly filled cells.
-    """
+    """Return the stiffnesses of this step only: volumetric term and softly held cells."""
     n_cells, n_per_cell = len(fill.cell_volume), np.diff(points.cell_start)
     first = np.minimum(points.cell_start[:-1], len(points.material) - 1)
     modulus = youngs_modulus(model.materials)[points.material[first]]

@@ -36,10 +36,7 @@ def geostatic_stress(ground: Ground, height: np.ndarray, vertical: int) -> np.nd
 
 
 def undrained_shear_strength(ground: Ground, height: np.ndarray) -> np.ndarray:
-    """Return the undrained shear strength (n,) in Pa of undisturbed ground at ``height``.
-
-    Zero if it has none.
-    """
+    """Return the undrained shear strength (n,) in Pa of the ground at ``height``, zero if none."""
     soil = ground.soil
     if not isinstance(soil, UndrainedClay):
         return np.zeros(len(height))

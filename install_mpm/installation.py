@@ -154,10 +154,7 @@ def set_up(
 
 
 def _supports(mesh: BackgroundMesh, box: Box) -> np.ndarray:
-    """Return which dofs are held, (n_nodes, 2) bool.
-
-    Rollers on symmetry axis and side, fixed bottom.
-    """
+    """Return which dofs are held, (n_nodes, 2): rollers on axis and side, fixed bottom."""
     x, z = mesh.reference_nodes.T
     is_held = np.zeros(mesh.nodes.shape, dtype=bool)
     is_held[:, 0] = (np.abs(x) < ON_BOUNDARY) | (np.abs(x - box.width) < ON_BOUNDARY)

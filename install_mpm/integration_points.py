@@ -51,19 +51,13 @@ class CellFill(NamedTuple):
     is_active: np.ndarray
     """The cell holds material points, (n_cells,) bool."""
     is_interior: np.ndarray
-    """All vertices are filled beyond the threshold.
-
-    The cell counts with its whole volume, (n_cells,) bool.
-    """
+    """All vertices are filled: the cell counts with its whole volume, (n_cells,) bool."""
     cell_volume: np.ndarray
     """Volume of the cells, (n_cells,) in m^3."""
 
 
 class Trial(NamedTuple):
-    """State at the integration points for a trial displacement.
-
-    Filled by the kernel, stored nowhere.
-    """
+    """State at the integration points for a trial displacement; stored nowhere."""
 
     elastic_log_strain: np.ndarray
     """(n, 3, 3)"""

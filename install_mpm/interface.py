@@ -18,10 +18,7 @@ class InterfaceElements(NamedTuple):
     """Topology of the interface: paired facets and the integration rule on them."""
 
     nodes: np.ndarray
-    """Soil-side nodes, then pile-side nodes where the pile is deformable.
-
-    (n_elements, n_sides * n_facet_nodes).
-    """
+    """Nodes of the soil side, then of a deformable pile, (n_elements, n_sides * n_facet_nodes)."""
     cell: np.ndarray
     """Background cell on the soil side, (n_elements,) int64."""
     shape_values: np.ndarray
@@ -107,9 +104,6 @@ def global_traction(points: InterfacePoints) -> np.ndarray:
 
 
 def reaction(points: InterfacePoints, selected: np.ndarray | None = None) -> np.ndarray:
-    """Return the force (dim,) in N of the soil on the modelled part of the pile.
-
-    On ``selected`` points or all.
-    """
+    """Return the force (dim,) in N of the soil on the pile, over ``selected`` points or all."""
     force = -global_traction(points) * (points.area * points.covered)[:, None]
     return np.asarray(force.sum(axis=0) if selected is None else force[selected].sum(axis=0))

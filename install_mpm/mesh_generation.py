@@ -11,10 +11,7 @@ from install_mpm.pile import Pile
 
 GMSH_TRIANGLE_6 = 9
 FINE_REACH = 1.0
-"""The size at the pile tip is kept within this many half-widths of the base.
-
-And along the shaft at half that.
-"""
+"""Half-widths around the base within which the size is that at the pile; half for the shaft."""
 
 
 def generate_background_mesh(

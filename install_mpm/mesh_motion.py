@@ -1,7 +1,4 @@
-"""The mesh follows the pile: laws that move background nodes.
-
-Decoupled from the material points.
-"""
+"""The mesh follows the pile: laws that move nodes, decoupled from the material points."""
 
 from __future__ import annotations
 

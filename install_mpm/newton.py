@@ -90,10 +90,7 @@ def _backtrack(
     correction: np.ndarray,
     residual: float,
 ) -> tuple[np.ndarray, Evaluation]:
-    """Return the first trial that is admissible and does not increase the residual.
-
-    Else the best one.
-    """
+    """Return the first admissible trial that does not increase the residual, else the best."""
     best: tuple[np.ndarray, Evaluation] | None = None
     for halving in range(BACKTRACKS + 1):
         trial = x + correction * 0.5**halving

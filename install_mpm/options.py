@@ -49,10 +49,7 @@ class Numerics:
     max_iterations: Annotated[int, Ge(3)] = 25
     max_cuts: Annotated[int, Ge(0)] = 6
     volumetric_term: Annotated[float, Ge(0)] = 0.1
-    """Stiffness h_v of the volumetric term over Young's modulus.
-
-    Acts within a step, is never stored.
-    """
+    """Stiffness h_v of the volumetric term, of a step only, over Young's modulus."""
     fill_threshold: Share = 0.3
     soft_stiffness: Annotated[float, Ge(0)] = 1e-2
     most_points_per_cell: Annotated[int, Ge(3)] = 48

@@ -34,20 +34,14 @@ class Pile:
 
 
 SYMMETRY_FACTOR = 2.0
-"""Whole pile over modelled half.
-
-Histories, curves and reports are for the whole pile, per metre run.
-"""
+"""Whole pile over modelled half; histories, curves and reports are for the whole."""
 
 WHOLE_PILE = {Kinematics.PLANE_STRAIN: SYMMETRY_FACTOR, Kinematics.AXISYMMETRIC: 1.0}
 """Whole pile over what the forces of a model stand for: axisymmetric forces are those of all."""
 
 
 def surface_normals(part: np.ndarray) -> np.ndarray:
-    """Return the exact unit normals (n, 2), from soil to pile.
-
-    Of interface points on ``part`` (n,).
-    """
+    """Return the exact unit normals (n, 2), from soil to pile, of points on ``part`` (n,)."""
     normals = np.zeros((len(part), 2))
     normals[part == PilePart.BASE] = (0.0, 1.0)
     normals[part == PilePart.SHAFT] = (-1.0, 0.0)
@@ -55,10 +49,7 @@ def surface_normals(part: np.ndarray) -> np.ndarray:
 
 
 def tangent_of(normals: np.ndarray) -> np.ndarray:
-    """Return the unit tangents (n, 2): the normals turned by +90 degrees.
-
-    On the shaft they point down.
-    """
+    """Return the tangents (n, 2): normals turned by +90 degrees, pointing down on the shaft."""
     return np.column_stack([-normals[:, 1], normals[:, 0]])
 
 
@@ -75,10 +66,7 @@ def buried_weight(
 
 
 class PileMotion(NamedTuple):
-    """Rigid motion of the pile in a step: a translation.
-
-    Then a rotation about the origin (2D: about +y out of page).
-    """
+    """Rigid motion of the pile in a step: a rotation about the origin, and a translation."""
 
     translation: np.ndarray
     """(dim,) in m."""

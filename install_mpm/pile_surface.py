@@ -1,7 +1,4 @@
-"""Interface elements on the surface of the pile.
-
-Which facets of the mesh lie on it, and where their points are.
-"""
+"""Interface elements on the pile: which facets lie on it, and where their points are."""
 
 from __future__ import annotations
 
@@ -23,10 +20,7 @@ ON_SURFACE = 1e-9
 
 
 def pile_elements(mesh: BackgroundMesh, pile: Pile) -> tuple[InterfaceElements, np.ndarray]:
-    """Return the interface elements on the rigid pile, shaft after base.
-
-    And their ``PilePart`` (n_elements,).
-    """
+    """Return the interface elements on the pile and the ``PilePart`` (n_elements,) of each."""
     corners = mesh.cell_nodes[:, :3]
     ends = facets_opposite_vertices(corners)
     is_boundary = mesh.cell_neighbours < 0
@@ -103,10 +97,7 @@ def follow(
     law: CoulombInterface,
     kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> InterfacePoints:
-    """Return the interface at its place on the moved mesh.
-
-    The adhesion is that of the ground at its level.
-    """
+    """Return the interface at its place on the moved mesh, with the adhesion of that level."""
     position, area = place_points(elements, mesh, kinematics)
     strength = undrained_shear_strength(ground, position[:, -1])
     return interface._replace(

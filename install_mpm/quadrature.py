@@ -78,10 +78,7 @@ def take_state(
     model: Discretisation,
     gradient: GeostaticGradient,
 ) -> tuple[MaterialPoints, bool]:
-    """Return the material points with the state of the integration points, and True.
-
-    All are sound.
-    """
+    """Return the material points with the state of the integration points; all are sound."""
     trial, displacement = equilibrium.trial, equilibrium.displacement
     values, _, _ = shapes(points, mesh, model.cell, model.kinematics)
     motion = np.einsum("pa,pai->pi", values, displacement[mesh.cell_nodes[points.cell]])

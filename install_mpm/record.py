@@ -20,10 +20,7 @@ Record = TypeVar("Record", bound=tuple[Any, ...])
 
 
 class StateFileError(ValueError):
-    """A state file cannot be used.
-
-    The message names the file, the group and the field, and says what to do.
-    """
+    """A state file cannot be used; the message names file, group and field, and the remedy."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +48,7 @@ def fields_of(record_type: type) -> dict[str, Field]:
 
 
 def write_record(group: h5py.Group, record: Any) -> None:
-    """Write every array of ``record`` as a dataset of ``group``.
-
-    With unit and meaning as attributes.
-    """
+    """Write every array of ``record`` as a dataset with unit and meaning as attributes."""
     for name, field in fields_of(type(record)).items():
         dataset = group.create_dataset(
             name, data=np.asarray(getattr(record, name), dtype=field.dtype, order="C")

@@ -26,10 +26,7 @@ from install_mpm.pile import PileMotion
 SCHEMES = {Scheme.CARRIERS: carriers, Scheme.QUADRATURE: quadrature}
 
 LEVEL_FILL = 0.4
-"""Fill of a vertex from which on the facets below it count as covered.
-
-On a level surface it is about one half.
-"""
+"""Fill of a vertex above which its facets count as covered; about 1/2 at a level surface."""
 
 
 class StepCounts(NamedTuple):
@@ -128,10 +125,7 @@ def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation)
 
 
 def locate(points: MaterialPoints, mesh: BackgroundMesh) -> int:
-    """Find the cell of every point, in place.
-
-    Return how many had to be brought back from outside the mesh.
-    """
+    """Find the cell of every point, in place; return how many were brought back into the mesh."""
     status, before = np.zeros(len(points.cell), dtype=np.int64), points.position.copy()
     locate_points(
         mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours, points.position, points.cell,

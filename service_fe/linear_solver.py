@@ -27,6 +27,11 @@ class TangentSolver:
         preconditioner = self._ksp.getPC()
         preconditioner.setType(PETSc.PC.Type.LU)
         preconditioner.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+        self._prepare_factors()
+
+    def _prepare_factors(self) -> None:
+        """Make the analysis independent of values; needed again after a reset."""
+        preconditioner = self._ksp.getPC()
         preconditioner.setFactorSetUpSolverType()
         preconditioner.getFactorMatrix().setMumpsIcntl(MAX_TRANSVERSAL, 0)
 
@@ -58,6 +63,9 @@ class TangentSolver:
         self._left.array_w[self.row_of_dof] = right_hand_side
         self._ksp.solve(self._left, self._right)
         if self._ksp.getConvergedReason() < 0:
+            self._ksp.getPC().reset()  # PETSc would leave out the factorisation after a failed one
+            self._ksp.setOperators(self.matrix)
+            self._prepare_factors()
             raise FactorisationError("the tangent stiffness is singular")
         return self._right.array_r[self.row_of_dof]
 

@@ -19,6 +19,9 @@ DISPLAY = {
 """Factor and name of the display unit of each SI unit; forces and volumes are per metre run."""
 
 
+ROUND_OFF = 1e-9
+"""A quantity with a unit is shown as zero below this, in display units."""
+
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -27,7 +30,10 @@ def shown(value: float | None, unit: str = "", digits: int = 4) -> str:
     if value is None:
         return "–"
     factor, name = DISPLAY.get(unit, (1.0, unit))
-    return f"{significant(factor * value, digits)} {name}".rstrip()
+    scaled = factor * value
+    if unit and abs(scaled) < ROUND_OFF:
+        scaled = 0.0
+    return f"{significant(scaled, digits)} {name}".rstrip()
 
 
 def significant(value: float, digits: int = 4) -> str:

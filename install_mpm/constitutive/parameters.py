@@ -37,9 +37,7 @@ class NeoHookean:
 
 @dataclass(frozen=True)
 class VonMises:
-    """Undrained clay: Hencky elastic.
-
-    Perfectly plastic at the shear strength ``undrained_shear_strength``.
+    """Undrained clay: Hencky elastic, perfectly plastic at ``undrained_shear_strength``.
 
     The strength at the original depth d of the material is ``undrained_shear_strength + gradient *
     d``; it travels with the material as a state variable.

@@ -22,10 +22,7 @@ from install_mpm.constitutive.mandel import SQRT2, trace
 from install_mpm.constitutive.parameters import UndrainedClay
 
 STATE_VARIABLES = ("undrained_shear_strength", "plastic_shear_strain")
-"""Strength in Pa carried by the material.
-
-Accumulated plastic shear strain sqrt(2) |d eps_p|, dimensionless.
-"""
+"""Strength carried by the material in Pa; accumulated plastic shear strain sqrt(2) |d eps_p|."""
 
 STRENGTH, PLASTIC_SHEAR = 0, 1
 
@@ -33,10 +30,7 @@ __all__ = ["elastic_strain_from_stress", "initial_state", "pack", "update_stress
 
 
 def pack(parameters: UndrainedClay) -> np.ndarray:
-    """Return the packed parameters: bulk and shear modulus in Pa.
-
-    The strength is a state variable.
-    """
+    """Return the packed parameters, bulk and shear modulus in Pa; the strength is a state."""
     return elastic.pack(parameters)
 
 

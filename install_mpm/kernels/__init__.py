@@ -1,4 +1,1 @@
-"""Numba loops of the installation stage.
-
-No I/O, no allocation of state, equations with their numbers.
-"""
+"""Numba loops of the installation stage: no I/O, no allocation of state."""

@@ -97,10 +97,7 @@ def vertex_fill(
 
 @jit
 def body_force(cell_type, cell_nodes, points, gravity, force):
-    """Add the weight of the integration points to the nodal ``force`` (n_nodes, dim) in N.
-
-    Downward.
-    """
+    """Add the weight of the integration points to the nodal ``force`` (n_nodes, dim) in N."""
     n_nodes = cell_nodes.shape[1]
     vertical = force.shape[1] - 1
     values = np.empty(n_nodes)

@@ -62,10 +62,7 @@ def _push_hoop(start, increment, scratch, local):
 
 @jit
 def push_gradients(start, increment, jacobian, current):
-    """Fill ``current`` (n_nodes, dim) = dF^-T ``start``.
-
-    Gradients by the current instead of the start-of-step position.
-    """
+    """Fill ``current`` = dF^-T ``start`` (n_nodes, dim): gradients by the current position."""
     if start.shape[1] == 2:
         in_plane = jacobian / increment[2, 2]
         for a in range(start.shape[0]):

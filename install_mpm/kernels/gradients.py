@@ -50,10 +50,7 @@ def add_hoop_gradient(displacement, cell_nodes, hoop, gradient):
 
 @jit
 def displacement_gradient(displacement, cell_nodes, gradients, gradient):
-    """Fill ``gradient`` (3, 3) with du_i/dx_j from nodal ``displacement`` (n, dim).
-
-    Out-of-plane terms are zero.
-    """
+    """Fill ``gradient`` (3, 3) with du_i/dx_j of nodal ``displacement``, zero out of plane."""
     gradient[:, :] = 0.0
     dim = gradients.shape[1]
     for a in range(cell_nodes.shape[0]):

@@ -1,7 +1,4 @@
-"""Force and stiffness of the interface elements.
-
-F = B^T t A, K = B^T R_end^T D R_mid B A (paper, eqs 8-10).
-"""
+"""Interface elements: f = B^T t A and K = B^T R_end^T D R_mid B A (paper, eqs 8-10)."""
 
 from __future__ import annotations
 

@@ -1,17 +1,11 @@
-"""Which cell holds a point, by walking through neighbours.
-
-Triangles only (straight edges make it exact).
-"""
+"""Which triangle holds a point, by walking through neighbours; exact for straight edges."""
 
 from __future__ import annotations
 
 from install_mpm._jit import jit
 
 INSIDE_TOLERANCE = 1e-12
-"""Barycentric coordinates down to minus this count as inside.
-
-So that points on edges find a cell.
-"""
+"""Barycentric coordinates down to minus this count as inside: points on edges find a cell."""
 
 INWARD_SHARE = 0.02
 """A point brought back from outside is put this share of the way to the centroid of its cell."""
@@ -56,10 +50,7 @@ def locate_points(
 
 @jit
 def _walk(nodes, cell_nodes, cell_neighbours, point, start, scratch):
-    """Return the cell reached by crossing the facet of the most negative coordinate.
-
-    Or -1 at the boundary.
-    """
+    """Return the cell reached across facets of negative coordinates, or -1 at the boundary."""
     c = start
     for _ in range(cell_nodes.shape[0]):
         barycentric(nodes, cell_nodes[c], point, scratch)
@@ -77,10 +68,7 @@ def _walk(nodes, cell_nodes, cell_neighbours, point, start, scratch):
 
 @jit
 def _search_all(nodes, cell_nodes, point, scratch):
-    """Return the first cell that holds the point, or -1.
-
-    Only for walks that a re-entrant corner stopped.
-    """
+    """Return the first cell that holds the point, or -1; for walks stopped by a corner."""
     for c in range(cell_nodes.shape[0]):
         barycentric(nodes, cell_nodes[c], point, scratch)
         if min(scratch[0], scratch[1], scratch[2]) >= -INSIDE_TOLERANCE:
@@ -90,10 +78,7 @@ def _search_all(nodes, cell_nodes, point, scratch):
 
 @jit
 def _project(nodes, cell_nodes, cell_neighbours, point):
-    """Move ``point`` just inside the nearest boundary facet, in place.
-
-    And return the cell behind it.
-    """
+    """Move ``point`` just inside the nearest boundary facet; return the cell behind it."""
     nearest, nearest_distance = -1, 1e300
     best_x = best_y = 0.0
     for c in range(cell_nodes.shape[0]):

@@ -1,7 +1,4 @@
-"""Shape functions and gradients at material points.
-
-For the scheme in which they are the quadrature.
-"""
+"""Shape functions and gradients at material points that are the quadrature."""
 
 from __future__ import annotations
 

@@ -140,10 +140,7 @@ def _move_point(p, cell_nodes, displacement, points, values, updated):
 
 @jit
 def _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated):
-    """Give all points of a cell its mean volumetric trial strain.
-
-    Plus the geostatic gradient over height.
-    """
+    """Give all points of a cell its mean volumetric strain, plus the geostatic gradient."""
     vertical = updated.position.shape[1] - 1
     volume = mean = height = 0.0
     for entry in range(first, last):
@@ -166,10 +163,7 @@ def _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated
 
 @jit
 def _return_to_yield_surface(p, points, materials, scratch, updated):
-    """Evaluate the law of point ``p`` from the trial strain that ``updated`` holds.
-
-    Return its status.
-    """
+    """Evaluate the law of point ``p`` at the trial strain in ``updated``; return its status."""
     row = points.material[p]
     to_mandel(updated.elastic_log_strain[p], scratch.trial)
     status = update_stress(

@@ -168,6 +168,7 @@ class Column:
         self.supports[:, 0] = (x < 1e-9) | (x > self.width - 1e-9)
         self.supports[:, 1] = z < 1e-9 - self.depth
         self.gradient = geostatic_gradient(ground, 1)
+        self.motion = PileMotion(np.zeros(2))
 
     def points(self) -> MaterialPoints:
         """Twelve points in each cell."""
@@ -201,7 +202,7 @@ class Column:
         """One step under gravity and prescribed displacements."""
         at_rest = np.zeros_like(mesh.nodes)
         return step(
-            points, mesh, self.interface, PileMotion(np.zeros(2)),
+            points, mesh, self.interface, self.motion,
             prescribed or Prescribed(self.supports, at_rest), at_rest if start is None else start,
             move_mesh, self.model, self.gradient,
         )  # fmt: skip

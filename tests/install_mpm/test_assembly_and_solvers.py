@@ -120,6 +120,18 @@ def test_solver_is_used_again_with_other_values(solver, system, pattern, rng):
 
 
 @every_solver
+def test_solution_does_not_depend_on_what_was_solved_before(solver, rng):
+    """A resumed run starts with another matrix than the run it continues, and must not differ."""
+    n = 40
+    pattern = sparsity_pattern([rng.integers(n, size=(60, 3))], n, 1)
+    first, second = 10.0 ** rng.uniform(-6.0, 6.0, size=(2, len(pattern.indices)))
+    load = rng.normal(size=n)
+    solve = SOLVERS[solver](pattern)
+    solve(first, load)
+    np.testing.assert_array_equal(solve(second, load), SOLVERS[solver](pattern)(second, load))
+
+
+@every_solver
 def test_two_solvers_of_one_pattern_do_not_disturb_each_other(solver, system, pattern):
     values, load = system
     solvers = [SOLVERS[solver](pattern) for _ in range(2)]

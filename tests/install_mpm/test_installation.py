@@ -267,6 +267,24 @@ def test_failed_step_is_cut_and_the_step_grows_again(run, monkeypatch):
     assert history.penetration[-1] == pytest.approx(0.08)
 
 
+def test_trial_displacement_is_that_of_the_step_before(run, monkeypatch):
+    """In proportion to the advance, also of a shorter last step; the first one starts from rest."""
+    take_step, starts, results = installation.step, [], []
+
+    def watched(*arguments, start, **keywords):
+        results.append(take_step(*arguments, start=start, **keywords))
+        starts.append(start)
+        return results[-1]
+
+    monkeypatch.setattr(installation, "step", watched)
+    run(0.05)
+    assert not starts[0].any()
+    assert not starts[1].any()
+    for k, share in ((2, 1.0), (3, 0.5)):
+        expected = share * results[k - 1].equilibrium.displacement
+        np.testing.assert_allclose(starts[k], expected, rtol=1e-12, atol=1e-18)
+
+
 def test_last_short_step_is_cut_to_less_than_what_is_left(run, monkeypatch):
     """Halving the full step would try the same advance again."""
     take_step, advances = installation.step, []

@@ -108,6 +108,15 @@ def test_writing_is_atomic(path, state, monkeypatch):
     read_installed_state(path)
 
 
+def test_who_reads_while_it_is_written_sees_the_old_file(path, state):
+    before = path.read_bytes()
+    with path.open("rb") as reader:
+        write_installed_state(path, state._replace(case_text="title = 'new'\n"), "tests")
+        assert reader.read() == before
+    assert read_installed_state(path).case_text == "title = 'new'\n"
+    assert list(path.parent.iterdir()) == [path]
+
+
 def replaced(group, name, array, unit=None):
     """Put another array in the place of a dataset, with its unit or another one."""
     unit = group[name].attrs["unit"] if unit is None else unit

@@ -4,12 +4,16 @@ import numpy as np
 import pytest
 
 from install_mpm import carriers
-from install_mpm.constitutive.parameters import HenckyElastic, VonMises
+from install_mpm.assembly import sparsity_pattern
+from install_mpm.constitutive import coulomb_interface
+from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic, VonMises
 from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground, geostatic_stress
+from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule
 from install_mpm.material_points import cauchy_stress
 from install_mpm.mesh_motion import translate
 from install_mpm.options import Numerics
+from install_mpm.pile import PileMotion
 from install_mpm.seeding import elastic_strain_of
 
 GROUNDS = {
@@ -227,3 +231,35 @@ def test_weight_of_points_is_that_of_the_body(make_column, clay_ground, rng):
     weight = (quadrature.density * quadrature.volume).reshape(len(column.mesh.cell_nodes), -1)
     expected = np.bincount(points.cell, points.mass, len(weight))
     np.testing.assert_allclose(weight.sum(axis=1), expected, rtol=1e-12)
+
+
+def test_turning_pile_slides_without_a_gap(make_column, elastic_ground):
+    """Points on a circle about the origin, soil held: the pressure stays, the chord is the slip."""
+    column, angle, radius = make_column(elastic_ground), 0.3, 0.5
+    mesh = column.mesh
+    direction = np.array([0.2, 1.0, 2.0])
+    normal = -np.column_stack([np.cos(direction), np.sin(direction)])
+    law = CoulombInterface(1e8, 1e7, cohesion=1e12)
+    elements = InterfaceElements(
+        mesh.cell_nodes[:1, [0, 1, 3]], np.zeros(1, dtype=np.int64), *facet_rule(3, 3)
+    )
+    column.model = column.model._replace(
+        elements=elements,
+        pattern=sparsity_pattern([mesh.cell_nodes, elements.nodes], len(mesh.nodes), 2),
+    )
+    interface = InterfacePoints(
+        position=-radius * normal,
+        normal=normal,
+        area=elements.weights,
+        traction=np.tile([0.0, -5e3], (3, 1)),
+        parameters=coulomb_interface.pack(law, np.zeros(3)),
+        part=np.zeros(3, dtype=np.int64),
+        covered=np.ones(3),
+    )
+    column.interface, column.motion = interface, PileMotion(np.zeros(2), angle)
+    everything = np.ones(mesh.nodes.shape, dtype=bool)
+    result = column.step(column.points(), mesh, Prescribed(everything, 0.0 * mesh.nodes))
+    assert result.is_converged
+    chord = 2.0 * radius * np.sin(angle / 2.0)
+    expected = np.tile([-1e7 * chord, -5e3], (3, 1))  # the tangent points clockwise here
+    np.testing.assert_allclose(result.interface.traction, expected, rtol=1e-9)

@@ -51,9 +51,14 @@ def test_solution_with_blocks_and_fixed_unknowns_equals_the_dense_one(soil):
         np.testing.assert_array_equal(solution[fixed], 0.0)
 
 
-def test_singular_matrix_is_reported(soil):
+def test_singular_matrix_is_reported_and_the_solver_survives_it(soil):
     solver = TangentSolver(soil.matrix, soil.row_of_dof)
-    soil.stiffness(np.zeros((len(soil.integration_volumes), 6, 6)))
+    stiffness = np.zeros((len(soil.integration_volumes), 6, 6))
+    soil.stiffness(stiffness)
     solver.factorise(np.array([0]), diagonal=1.0)
     with pytest.raises(FactorisationError, match="singular"):
         solver.solve(np.ones(soil.n_dofs))
+    every_dof = np.arange(soil.n_dofs)
+    soil.stiffness(stiffness)
+    solver.factorise(every_dof, diagonal=2.0)
+    np.testing.assert_allclose(solver.solve(np.ones(soil.n_dofs)), 0.5)

@@ -14,6 +14,7 @@ MODULES: tuple[str, ...] = (
     "ample_collapse",
     "ample_column",
     "reload",
+    "cantilever",
     "cavity",
     "circular_footing",
     "circular_footing_mpm",
