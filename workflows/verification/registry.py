@@ -11,6 +11,12 @@ from workflows.errors import CaseError
 from workflows.verification.problem import Problem
 
 MODULES: tuple[str, ...] = (
+    "stretched_body",
+    "rigid_rotation",
+    "moving_mesh",
+    "ellipse",
+    "annulus_interface",
+    "annulus",
     "ample_collapse",
     "ample_column",
     "reload",
