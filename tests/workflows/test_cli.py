@@ -216,7 +216,17 @@ def test_every_command_has_help():
         text=True,
         check=True,
     ).stdout
-    for command in ("run", "install", "handoff", "serve", "wished", "compare", "report", "check"):
+    for command in (
+        "run",
+        "install",
+        "handoff",
+        "serve",
+        "wished",
+        "compare",
+        "report",
+        "check",
+        "verify",
+    ):
         assert f" {command} " in shown
 
 
