@@ -291,7 +291,7 @@ def _curve(name: str, result: PenetrationResult, table: dict[int, float]) -> Ser
 
 
 PROBLEMS = (
-    Problem("FIG6", "Pile without slip, the paper's scheme (paper, Fig. 6)", fig6, is_quick=True),
+    Problem("FIG6", "Pile without slip, the paper's scheme (paper, Fig. 6)", fig6, is_quick=False),
     Problem(
         "FIG6-DEFAULT",
         "Pile without slip, carriers and quadratic cells",
