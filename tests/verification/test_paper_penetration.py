@@ -15,9 +15,8 @@ from workflows.verification.paper_penetration import (
     fig6_default,
     fig6_friction,
     fig8,
-    work_and_energy,
 )
-from workflows.verification.penetration import Penetration, penetrate
+from workflows.verification.penetration import Penetration, penetrate, work_and_energy
 from workflows.verification.references import prototype
 
 pytestmark = pytest.mark.gmsh

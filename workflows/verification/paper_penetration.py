@@ -16,8 +16,13 @@ import numpy as np
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Unit
 from install_mpm.discretisation import Scheme
-from install_mpm.material_points import MaterialPoints
-from workflows.verification.penetration import Penetration, PenetrationResult, penetrate
+from workflows.verification.penetration import (
+    Penetration,
+    PenetrationResult,
+    penetrate,
+    surface,
+    work_and_energy,
+)
 from workflows.verification.problem import (
     Check,
     Outcome,
@@ -224,18 +229,6 @@ def _to_prototype(
     ]
 
 
-def work_and_energy(result: PenetrationResult, problem: Penetration) -> tuple[float, float]:
-    """Return the work of the pile (trapezoidal rule) and the energy stored, in J per metre run."""
-    depth, force = (np.append(0.0, x) for x in (result.penetration, result.reaction))
-    work = float((np.diff(depth) * (force[1:] + force[:-1]) / 2.0).sum())
-    points, E, nu = result.body.points, problem.youngs_modulus, problem.poissons_ratio
-    strain = points.elastic_log_strain
-    squared = np.einsum("pij,pij->p", strain, strain)
-    trace = np.trace(strain, axis1=1, axis2=2)
-    density = E / (1.0 + nu) / 2.0 * (squared + nu / (1.0 - 2.0 * nu) * trace**2)
-    return work, float((density * points.volume / points.volume_ratio).sum())
-
-
 def _energy(name: str, result: PenetrationResult, problem: Penetration) -> Check:
     """Return the check that no energy comes from nowhere: elastic soil stores the work at most."""
     work, energy = work_and_energy(result, problem)
@@ -250,14 +243,6 @@ def _dissipated(name: str, result: PenetrationResult, problem: Penetration) -> s
         f"({name}) work {work / 1e3:.2f} kJ/m, stored {energy / 1e3:.2f} kJ/m: the scheme loses "
         f"{100.0 * (1.0 - energy / work):.1f} %; steps cut: {result.cuts}."
     )
-
-
-def surface(points: MaterialPoints, problem: Penetration, width: float = 0.5) -> np.ndarray:
-    """Return the highest point of each strip beside the pile, in m above the bottom."""
-    x, z = points.position.T
-    edges = np.arange(problem.half_width, problem.width - 1e-9, width)
-    strips = [(x >= left) & (x < left + width) for left in edges]
-    return np.array([z[strip].max() for strip in strips if strip.any()]) + problem.depth
 
 
 def _dragged(levels: np.ndarray, result: PenetrationResult) -> Check:

@@ -237,3 +237,23 @@ def _supports(
         is_prescribed[on_pile] = True
         displacement[on_pile, 1] = -advance_by
     return Prescribed(is_prescribed, displacement), on_pile
+
+
+def work_and_energy(result: PenetrationResult, problem: Penetration) -> tuple[float, float]:
+    """Return the work of the pile (trapezoidal rule) and the energy stored, in J per metre run."""
+    depth, force = (np.append(0.0, x) for x in (result.penetration, result.reaction))
+    work = float((np.diff(depth) * (force[1:] + force[:-1]) / 2.0).sum())
+    points, E, nu = result.body.points, problem.youngs_modulus, problem.poissons_ratio
+    strain = points.elastic_log_strain
+    squared = np.einsum("pij,pij->p", strain, strain)
+    trace = np.trace(strain, axis1=1, axis2=2)
+    density = E / (1.0 + nu) / 2.0 * (squared + nu / (1.0 - 2.0 * nu) * trace**2)
+    return work, float((density * points.volume / points.volume_ratio).sum())
+
+
+def surface(points: MaterialPoints, problem: Penetration, width: float = 0.5) -> np.ndarray:
+    """Return the highest point of each strip beside the pile, in m above the bottom."""
+    x, z = points.position.T
+    edges = np.arange(problem.half_width, problem.width - 1e-9, width)
+    strips = [(x >= left) & (x < left + width) for left in edges]
+    return np.array([z[strip].max() for strip in strips if strip.any()]) + problem.depth
