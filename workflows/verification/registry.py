@@ -11,6 +11,7 @@ from workflows.errors import CaseError
 from workflows.verification.problem import Problem
 
 MODULES: tuple[str, ...] = (
+    "deep_penetration",
     "stretched_body",
     "rigid_rotation",
     "moving_mesh",
