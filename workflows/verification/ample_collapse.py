@@ -126,9 +126,9 @@ def _checks(data: CollapseInput, name: str, run: Collapsed) -> tuple[Check, ...]
         ample.COLLAPSE_MEAN_STRESS * length * weight / (COLLAPSE.density * COLLAPSE.gravity)
     )
     return (
-        relative(f"largest x of the points [m], {name}", x, reference_x * length, 2e-2),
-        relative(f"largest y of the points [m], {name}", y, reference_y * length, 2e-2),
-        relative(f"mean stress [Pa], {name}", run.mean_stress, mean_stress, 2e-2),
+        relative(f"largest x of the points [m], {name}", x, reference_x * length, 1e-2),
+        relative(f"largest y of the points [m], {name}", y, reference_y * length, 1e-2),
+        relative(f"mean stress [Pa], {name}", run.mean_stress, mean_stress, 1e-2),
         relative(
             f"base reaction [N], {name}", run.reaction, weight * data.width * data.height, 1e-7
         ),

@@ -134,6 +134,7 @@ def cantilever(
             relative(
                 "deflection w of the tip at depth d / 2 [m]", -slender.tip[-1, 1], w[-1], 0.02
             ),
+            relative("deflection w of the tip at depth d [m]", -deep.tip[-1, 1], w[-1], 0.02),
             relative("support reaction [N]", deep.reaction[1], P, 1e-8),
         ),
         series=(
