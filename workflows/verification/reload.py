@@ -13,7 +13,8 @@ import numpy as np
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.conventions import Unit
 from install_mpm.ground import Ground
-from install_mpm.installation import Installation, advance_pile, install, set_up
+from install_mpm.installation import advance_pile, install
+from install_mpm.installation_setup import Installation, set_up
 from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
 from install_mpm.pile import Pile
 from install_mpm.state_file import InstalledState
