@@ -25,6 +25,7 @@ from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem, roller_supports
 from service_fe.rigid_pile import held
 from workflows.verification.problem import Outcome, Problem, Series, at_least, at_most, relative
+from workflows.verification.revolution import quadratic
 
 EXACT = 2.0 + np.pi
 
@@ -129,28 +130,13 @@ def footing_mesh(width: float, size_at_corner: float, size_far: float) -> FEMesh
     vertices, triangles = triangulate(
         outline, lambda x, z: min(size_far, size_at_corner + growth * float(np.hypot(x - edge, z)))
     )
-    cell_nodes, facet_nodes, nodes = _quadratic(vertices, triangles)
+    nodes, cell_nodes, facet_nodes = quadratic(vertices, triangles)
     x, z = nodes[facet_nodes[:, 2]].T
     tags = np.full(len(x), int(FacetTag.SURFACE))
     tags[np.abs(z + depth) < 1e-9 * width] = FacetTag.BOTTOM
     tags[np.abs(x - side) < 1e-9 * width] = FacetTag.SIDE
     tags[np.abs(x) < 1e-9 * width] = FacetTag.SYMMETRY
     return FEMesh(nodes, cell_nodes, facet_nodes, tags)
-
-
-def _quadratic(
-    vertices: np.ndarray, triangles: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return six-node cells, the edges on the boundary, and all nodes with mid-sides at the end."""
-    ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-    unique, edge, uses = np.unique(
-        np.sort(ends, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
-    edge = edge.reshape(-1)
-    middle = len(vertices) + edge
-    cell_nodes = np.column_stack([triangles, middle.reshape(-1, 3)])
-    facet_nodes = np.column_stack([ends, middle])[uses[edge] == 1]
-    return cell_nodes, facet_nodes, np.concatenate([vertices, vertices[unique].mean(axis=1)])
 
 
 SIZES = (0.05, 0.025, 0.0125)
