@@ -8,7 +8,6 @@ import numpy as np
 
 from handoff.fe_mesh import FEMesh
 from install_mpm.conventions import Kinematics
-from install_mpm.pile import SYMMETRY_FACTOR
 from service_fe.axisymmetric_forms import AxisymmetricForms
 from service_fe.soil_forms import SoilForms
 
@@ -18,9 +17,6 @@ FORMS: dict[Kinematics, Callable[[FEMesh], Forms]] = {
     Kinematics.PLANE_STRAIN: SoilForms,
     Kinematics.AXISYMMETRIC: AxisymmetricForms,
 }
-
-WHOLE_BODY = {Kinematics.PLANE_STRAIN: SYMMETRY_FACTOR, Kinematics.AXISYMMETRIC: 1.0}
-"""Force on the whole pile over that on the modelled part: half of it, or all of it."""
 
 
 def soil_forms(mesh: FEMesh, kinematics: Kinematics) -> Forms:

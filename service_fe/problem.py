@@ -17,8 +17,9 @@ from install_mpm.constitutive import coulomb_interface, dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground, undrained_shear_strength
+from install_mpm.pile import WHOLE_PILE
 from service_fe.interface_forms import InterfaceForms
-from service_fe.kinematics import WHOLE_BODY, soil_forms
+from service_fe.kinematics import soil_forms
 from service_fe.linear_solver import TangentSolver
 from service_fe.load_step import LoadStep, Model, Step, Unknowns
 from service_fe.newton import StepNotConvergedError
@@ -79,7 +80,7 @@ class ServiceProblem:
         self._soil = soil_forms(mesh, kinematics)
         self.mesh, self.ground = mesh, ground
         self.numerics = numerics or ServiceNumerics()
-        self.whole_body = WHOLE_BODY[kinematics]
+        self.whole_body = WHOLE_PILE[kinematics]
         self._interface = InterfaceForms(mesh, kinematics)
         self.gravity = self._soil.weight(ground.unit_weight)
         strength = undrained_shear_strength(ground, self._interface.positions[:, 1])
