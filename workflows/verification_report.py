@@ -144,6 +144,10 @@ def draw(series: tuple[Series, ...]) -> Figure:
     return figure
 
 
+ROUND_OFF = 1e-9
+"""A curve that varies by less than this share is drawn as the constant that it is."""
+
+
 def _draw(axes: Any, series: Series) -> None:
     x, computed = np.array(series.x), np.array(series.computed)
     if series.reference:
@@ -157,6 +161,9 @@ def _draw(axes: Any, series: Series) -> None:
         axes.locator_params(nbins=6)
     marker = {"marker": "o", "markersize": 3.5} if len(x) <= 60 else {}
     axes.plot(x, computed, color=INSTALLED, linewidth=1.0, label=label, **marker)
+    level = float(np.abs(computed).max())
+    if not series.is_logarithmic and np.ptp(computed) < ROUND_OFF * level:
+        axes.set_ylim(0.0, 1.3 * level) if computed[0] > 0.0 else axes.set_ylim(-1.3 * level, 0.0)
     axes.set(title=series.title, xlabel=series.abscissa, ylabel=series.ordinate)
     grid(axes)
     axes.legend()

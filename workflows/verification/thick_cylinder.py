@@ -142,16 +142,22 @@ def pd10(
                 tuple(fine.pressure[is_partial]),
                 tuple(exact),
             ),
-            Series(
-                "error of the collapse pressure",
-                "size of the cells / (b - a)",
-                "relative error",
-                tuple(1.0 / n_cells for n_cells in CELLS),
-                errors,
-                is_logarithmic=True,
-            ),
+            _convergence(errors),
         ),
         residual_histories=tuple(history for curve in curves for history in curve.residuals),
+    )
+
+
+def _convergence(errors: tuple[float, ...]) -> Series:
+    """Return the error of the collapse pressure over the size of the cells."""
+    sizes = tuple(1.0 / n_cells for n_cells in CELLS)
+    return Series(
+        "error of the collapse pressure",
+        "size of the cells / (b - a)",
+        "relative error",
+        sizes,
+        errors,
+        is_logarithmic=True,
     )
 
 
