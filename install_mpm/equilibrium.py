@@ -12,7 +12,7 @@ from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.discretisation import Discretisation
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
-from install_mpm.interface import InterfacePoints, frames
+from install_mpm.interface import InterfacePoints, local_axes
 from install_mpm.kernels.carry import body_force
 from install_mpm.kernels.cell_records import CellOptions
 from install_mpm.kernels.equilibrium import evaluate_cells
@@ -148,8 +148,8 @@ class _StepSystem:
         self.interface, self.is_prescribed = interface, prescribed.is_prescribed
         self.options = cell_options(fill, points, model)
         self.pile_displacement = rigid_displacement(motion, interface.position)
-        self.mid_frame = frames(interface.normal, motion.rotation / 2.0)
-        self.end_frame = frames(interface.normal, motion.rotation)
+        self.mid_frame = local_axes(interface, motion.rotation / 2.0)
+        self.end_frame = local_axes(interface, motion.rotation)
         self.trial = empty_trial(points)
         self.traction = np.zeros_like(interface.traction)
         self.cell_force = np.zeros((n_cells, n_cell_nodes, dim))

@@ -11,7 +11,12 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from install_mpm.cells import CellType, reference_cell, shape_functions
+from install_mpm.conventions import rotation_matrix
 from install_mpm.record import Field
+
+FACES_ROUND = 0.7
+"""Cosine between normal and circumferential direction above which a surface faces round the axis."""
 
 
 class InterfaceElements(NamedTuple):
@@ -58,10 +63,21 @@ class InterfacePoints(NamedTuple):
 
 
 def facet_rule(n_facet_nodes: int, n_points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return shape values (n_points, n_facet_nodes) and weights of a Gauss rule on a line.
+    """Return shape values (n_points, n_facet_nodes) and weights of a rule on a facet of unit size.
 
-    Nodes are the two ends, then the mid-side; eq. (5) of the paper is the two-node case.
+    On a line, with its two ends and the mid-side, it is a Gauss rule; eq. (5) of the paper is the
+    two-node case.  On a triangle of six nodes, with vertices first, it is the rule of three points,
+    one near each vertex.
+
+    Raises
+    ------
+    ValueError
+        If a triangle is asked for another number of points than three.
     """
+    if n_facet_nodes == 6:
+        if n_points != 3:
+            raise ValueError(f"a triangle has a rule of 3 points, not of {n_points}")
+        return _triangle_rule()
     xi, weights = np.polynomial.legendre.leggauss(n_points)
     ends = np.column_stack([(1.0 - xi) / 2.0, (1.0 + xi) / 2.0])
     if n_facet_nodes == 2:
@@ -70,10 +86,20 @@ def facet_rule(n_facet_nodes: int, n_points: int) -> tuple[np.ndarray, np.ndarra
     return values, weights / 2.0
 
 
+def _triangle_rule() -> tuple[np.ndarray, np.ndarray]:
+    """Return shape values (3, 6) and weights of the three-point rule on a six-node triangle."""
+    triangle = reference_cell(CellType.TRI6)
+    values = np.empty((3, 6))
+    for row, xi in zip(values, triangle.integration_coordinates, strict=True):
+        shape_functions(triangle.cell_type, xi, row)
+    return values, np.full(3, 1 / 3)
+
+
 def no_interface(dim: int) -> tuple[InterfaceElements, InterfacePoints]:
     """Return an interface without elements, for problems that have none."""
-    no_nodes, no_index = np.zeros((0, 3), dtype=np.int64), np.zeros(0, dtype=np.int64)
-    elements = InterfaceElements(no_nodes, no_index, *facet_rule(3, 3))
+    n_facet_nodes = 3 if dim == 2 else 6
+    no_nodes, no_index = np.zeros((0, n_facet_nodes), dtype=np.int64), np.zeros(0, dtype=np.int64)
+    elements = InterfaceElements(no_nodes, no_index, *facet_rule(n_facet_nodes, 3))
     vectors = np.zeros((0, dim))
     points = InterfacePoints(
         vectors, vectors, np.zeros(0), vectors, np.zeros((0, 5)), no_index, np.zeros(0)
@@ -82,7 +108,7 @@ def no_interface(dim: int) -> tuple[InterfaceElements, InterfacePoints]:
 
 
 def frames(normals: np.ndarray, rotation: float) -> np.ndarray:
-    """Return the local axes (n, 2, 2) of interface points.
+    """Return the local axes (n, 2, 2) of interface points in two dimensions.
 
     Rows tangent and normal, turned by ``rotation``.
 
@@ -90,20 +116,57 @@ def frames(normals: np.ndarray, rotation: float) -> np.ndarray:
     a chord of a circle has no normal component in the mid-step frame, and a false penetration in
     any other.
     """
-    cosine, sine = np.cos(rotation), np.sin(rotation)
-    normal = normals @ np.array([[cosine, sine], [-sine, cosine]])
+    normal = normals @ rotation_matrix(rotation, 2).T
     tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
     return np.stack([tangent, normal], axis=1)
 
 
+def frames_around_axis(normals: np.ndarray, positions: np.ndarray, rotation: float) -> np.ndarray:
+    """Return the local axes (n, 3, 3) of interface points on a pile whose axis is the z axis.
+
+    Rows two tangents and the normal, turned by ``rotation`` about the axis.  The first tangent is
+    the part of the circumferential direction that lies in the surface, or of the radial direction
+    where the surface faces round the axis, so the axes turn with the pile.
+    """
+    radius = np.linalg.norm(positions[:, :2], axis=1)
+    away = np.zeros_like(normals)
+    away[:, :2] = positions[:, :2] / np.where(radius > 0.0, radius, 1.0)[:, None]
+    away[radius == 0.0] = (1.0, 0.0, 0.0)
+    around = np.column_stack([-away[:, 1], away[:, 0], away[:, 2]])
+    faces_round = np.abs((around * normals).sum(axis=1)) > FACES_ROUND
+    first = np.where(faces_round[:, None], away, around)
+    first = first - (first * normals).sum(axis=1)[:, None] * normals
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    axes = np.stack([first, np.cross(normals, first), normals], axis=1)
+    return axes @ rotation_matrix(rotation, 3).T
+
+
+def local_axes(points: InterfacePoints, rotation: float = 0.0) -> np.ndarray:
+    """Return the local axes (n, dim, dim) of the points after a ``rotation`` of the pile in rad."""
+    if points.normal.shape[1] == 2:
+        return frames(points.normal, rotation)
+    return frames_around_axis(points.normal, points.position, rotation)
+
+
 def global_traction(points: InterfacePoints) -> np.ndarray:
     """Return the traction that the pile exerts on the soil in global axes, (n, dim) in Pa."""
-    axes = frames(points.normal, 0.0)
-    traction: np.ndarray = np.einsum("pij,pi->pj", axes, points.traction)
+    traction: np.ndarray = np.einsum("pij,pi->pj", local_axes(points), points.traction)
     return traction
+
+
+def force_on_pile(points: InterfacePoints) -> np.ndarray:
+    """Return the force (n, dim) in N of the soil on the pile at every point."""
+    force: np.ndarray = -global_traction(points) * (points.area * points.covered)[:, None]
+    return force
 
 
 def reaction(points: InterfacePoints, selected: np.ndarray | None = None) -> np.ndarray:
     """Return the force (dim,) in N of the soil on the pile, over ``selected`` points or all."""
-    force = -global_traction(points) * (points.area * points.covered)[:, None]
+    force = force_on_pile(points)
     return np.asarray(force.sum(axis=0) if selected is None else force[selected].sum(axis=0))
+
+
+def moment(points: InterfacePoints, selected: np.ndarray | None = None) -> np.ndarray:
+    """Return the moment (3,) in N m about the origin of the soil on the pile in space."""
+    moments = np.cross(points.position, force_on_pile(points))
+    return np.asarray(moments.sum(axis=0) if selected is None else moments[selected].sum(axis=0))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh, straightened
@@ -30,7 +32,7 @@ def translate(
     return straightened(mesh._replace(nodes=nodes))
 
 
-def rotate_clockwise(nodes: np.ndarray, angle: float) -> np.ndarray:
+def rotate_clockwise(nodes: np.ndarray, angle: float | np.ndarray) -> np.ndarray:
     """Return ``nodes`` (n, 2) turned about the origin by ``angle`` (rad), clockwise if positive.
 
     Paper, eqs (3) and (4), as printed: x1 = x0 cos + y0 sin, y1 = -x0 sin + y0 cos.
@@ -89,3 +91,44 @@ def expand(
     share = np.clip((outer_radius - radius) / (outer_radius - inner_radius), 0.0, 1.0)
     distance = growth * share / np.maximum(radius, inner_radius)
     return straightened(mesh._replace(nodes=nodes + distance[:, None] * outward))
+
+
+class ScrewZones(NamedTuple):
+    """Where the mesh moves with a screw pile, and where it stays."""
+
+    inner_radius: float
+    """Distance from the axis in m within which the mesh takes part in the whole motion."""
+    outer_radius: float
+    """Distance from the axis in m at which the motion has tapered to zero."""
+    rigid_levels: tuple[float, float]
+    """Levels in m, at zero pile motion, between which the mesh goes down with the pile as one."""
+    fixed_levels: tuple[float, float]
+    """Bottom and top in m, which stay at their level."""
+
+
+def screw(
+    mesh: BackgroundMesh, advance: float, angle: float, reset_angle: float, zones: ScrewZones
+) -> BackgroundMesh:
+    """Return the mesh of a pile that has gone down by ``advance`` (m) and turned by ``angle`` (rad).
+
+    The pile takes the whole of both; they taper linearly to zero between inner and outer radius.
+    Below and above the rigid levels the mesh is compressed and stretched as by eqs (1) and (2).
+    ``reset_angle`` turns the reference mesh as a whole before: a pile is the same body at every
+    angle, so the mesh can be wound back as often as wanted without making a new one.
+    """
+    reference = mesh.reference_nodes
+    radius = np.linalg.norm(reference[:, :2], axis=1)
+    span = zones.outer_radius - zones.inner_radius
+    share = np.clip((zones.outer_radius - radius) / span, 0.0, 1.0)
+    lower, upper = zones.rigid_levels
+    bottom, top = zones.fixed_levels
+    level = np.interp(
+        reference[:, 2],
+        [bottom, lower, upper, top],
+        [bottom, lower - advance, upper - advance, top],
+    )
+    turn = reset_angle + share * (angle - reset_angle)
+    nodes = np.empty_like(reference)
+    nodes[:, :2] = rotate_clockwise(reference[:, :2], -turn)
+    nodes[:, 2] = reference[:, 2] + share * (level - reference[:, 2])
+    return straightened(mesh._replace(nodes=nodes))

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm import carriers, quadrature
-from install_mpm.background_mesh import BackgroundMesh
+from install_mpm.background_mesh import FACETS_OPPOSITE, BackgroundMesh
 from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme, StepStart
 from install_mpm.equilibrium import Prescribed, StepEquilibrium, find_equilibrium
 from install_mpm.integration_points import CellFill
@@ -114,8 +114,8 @@ def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation)
     emptier vertex.
     """
     elements = model.elements
-    ends = elements.nodes[:, : min(2, elements.nodes.shape[1])]
-    covered = np.minimum(fill.vertex_fill[ends].min(axis=1, initial=1.0) / LEVEL_FILL, 1.0)
+    vertices = elements.nodes[:, : model.cell.dim]
+    covered = np.minimum(fill.vertex_fill[vertices].min(axis=1, initial=1.0) / LEVEL_FILL, 1.0)
     covered = np.repeat(
         np.where(fill.is_active[elements.cell], covered, 0.0), len(elements.weights)
     )
@@ -128,8 +128,9 @@ def locate(points: MaterialPoints, mesh: BackgroundMesh) -> int:
     """Find the cell of every point, in place; return how many were brought back into the mesh."""
     status, before = np.zeros(len(points.cell), dtype=np.int64), points.position.copy()
     locate_points(
-        mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours, points.position, points.cell,
-        points.reference_coordinates, status, np.empty(3),
+        mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours,
+        np.array(FACETS_OPPOSITE[mesh.nodes.shape[1] + 1]), points.position, points.cell,
+        points.reference_coordinates, status,
     )  # fmt: skip
     points.displacement[:] += points.position - before
     return int(np.count_nonzero(status == PROJECTED))
