@@ -16,7 +16,6 @@ from install_mpm._jit import jit, parallel_jit, prange
 from install_mpm.constitutive import (
     drucker_prager,
     elastic,
-    frictional,
     mohr_coulomb,
     neo_hookean,
     tresca,
@@ -24,7 +23,6 @@ from install_mpm.constitutive import (
 )
 from install_mpm.constitutive.parameters import (
     DruckerPrager,
-    FrictionalSoil,
     HenckyElastic,
     MohrCoulomb,
     NeoHookean,

@@ -105,10 +105,8 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
             for j in range(6):
                 tangent[i, j] *= frictional.APEX_STIFFNESS
     else:
-        _return_to_cone(
-            excess, dilation, slope * parameters[DILATION], parameters, stress, tangent
-        )
-    elastic_strain_from_stress(stress, parameters, elastic_strain)
+        _return_to_cone(excess, dilation, slope * parameters[DILATION], parameters, stress, tangent)
+    elastic_strain_from_stress(stress, parameters, state_old, elastic_strain)
     frictional.update_state(
         trial_strain, strain, elastic_strain, is_open, parameters, state_old, state
     )

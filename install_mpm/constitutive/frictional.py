@@ -24,8 +24,6 @@ from install_mpm.constitutive.mandel import SQRT2, trace
 from install_mpm.constitutive.parameters import FrictionalSoil
 
 STATE_VARIABLES = ("plastic_log_volume", "opening", "plastic_shear_strain")
-"""ln(1 + e) less the trace of the elastic strain; the part of it that is an opening;
-accumulated plastic shear strain sqrt(2) |d dev(eps_p)|."""
 
 LOG_VOLUME, OPENING, PLASTIC_SHEAR = 0, 1, 2
 

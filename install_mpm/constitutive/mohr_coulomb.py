@@ -91,7 +91,7 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
     if where == NOWHERE:
         return NOT_FINITE
     from_principal(returned, dyads, stress)
-    elastic_strain_from_stress(stress, parameters, elastic_strain)
+    elastic_strain_from_stress(stress, parameters, state_old, elastic_strain)
     is_open = where == APEX
     frictional.update_state(
         trial_strain, strain, elastic_strain, is_open, parameters, state_old, state
@@ -159,8 +159,7 @@ def _return_principal(trial, left, slope, parameters, stress, tangent):
 @jit
 def _plane_or_edge(stress, excess, dilation, parameters):
     """Return where the principal trial stress (3,) returns to, the apex not considered."""
-    sine, shear = parameters[SINE], parameters[SHEAR]
-    step = 2.0 * shear * excess / _resistance(dilation, parameters)
+    step = 2.0 * parameters[SHEAR] * excess / _resistance(dilation, parameters)
     # relative to tau_2 the flow of the plane lowers tau_1 and raises tau_3
     is_below = stress[0] - (1.0 + dilation) * step >= stress[1]
     is_above = stress[2] + (1.0 - dilation) * step <= stress[1]

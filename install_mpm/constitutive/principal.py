@@ -49,9 +49,7 @@ def principal_axes(vector, values, dyads):
 def from_principal(values, dyads, vector):
     """Fill the six-vector with the principal ``values`` (3,)."""
     for i in range(6):
-        vector[i] = (
-            values[0] * dyads[0, i] + values[1] * dyads[1, i] + values[2] * dyads[2, i]
-        )
+        vector[i] = values[0] * dyads[0, i] + values[1] * dyads[1, i] + values[2] * dyads[2, i]
 
 
 @jit
