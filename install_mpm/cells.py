@@ -97,7 +97,7 @@ def _barycentric(xi, v):
 
 @jit
 def _barycentric_gradient(v, i):
-    """Return the derivative by reference coordinate ``i`` of the linear function of vertex ``v``."""
+    """Return the derivative by coordinate ``i`` of the linear function of vertex ``v``."""
     if v == 0:
         return -1.0
     return 1.0 if v - 1 == i else 0.0

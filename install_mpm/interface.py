@@ -16,7 +16,7 @@ from install_mpm.conventions import rotation_matrix
 from install_mpm.record import Field
 
 FACES_ROUND = 0.7
-"""Cosine between normal and circumferential direction above which a surface faces round the axis."""
+"""Cosine of normal and circumferential direction above which a surface faces round the axis."""
 
 
 class InterfaceElements(NamedTuple):

@@ -109,7 +109,7 @@ class ScrewZones(NamedTuple):
 def screw(
     mesh: BackgroundMesh, advance: float, angle: float, reset_angle: float, zones: ScrewZones
 ) -> BackgroundMesh:
-    """Return the mesh of a pile that has gone down by ``advance`` (m) and turned by ``angle`` (rad).
+    """Return the mesh of a pile that went down by ``advance`` (m) and turned by ``angle`` (rad).
 
     The pile takes the whole of both; they taper linearly to zero between inner and outer radius.
     Below and above the rigid levels the mesh is compressed and stretched as by eqs (1) and (2).

@@ -211,7 +211,10 @@ def surface_normals(pile: ScrewPile, part: np.ndarray, points: np.ndarray) -> np
         first, winding = first_part(index), winding_angle(pile, helix, points)
         climb = helix.pitch / (2.0 * np.pi)
         slope = _thickness_slope(helix, winding) / 2.0
-        for face, sign, rise in ((LOWER_FACE, 1.0, climb - slope), (UPPER_FACE, -1.0, climb + slope)):
+        for face, sign, rise in (
+            (LOWER_FACE, 1.0, climb - slope),
+            (UPPER_FACE, -1.0, climb + slope),
+        ):
             gradient = up - (pile.sense * rise / np.maximum(radius, 1e-12))[:, None] * around
             of_part[first + face] = sign * gradient / np.linalg.norm(gradient, axis=1)[:, None]
         of_part[first + RIM] = -away

@@ -121,9 +121,7 @@ def _set_sizes(pile: ScrewPile, box: Box, options: ScrewMeshOptions) -> None:
     gmsh.option.setNumber("Mesh.MeshSizeMax", options.size_far)
 
 
-def cell_size(
-    pile: ScrewPile, options: ScrewMeshOptions
-) -> Callable[[float, float, float], float]:
+def cell_size(pile: ScrewPile, options: ScrewMeshOptions) -> Callable[[float, float, float], float]:
     """Return the wanted cell size in m as a function of the place: it grows away from the pile."""
     sense, a, tip = pile.sense, pile.shaft_radius, -pile.embedment
 

@@ -166,7 +166,7 @@ def _project(nodes, cell_nodes, cell_neighbours, facets, point, nearest):
 
 @jit
 def _nearest_on_segment(nodes, cell_nodes, ends, point, nearest):
-    """Fill ``nearest`` (2,) with the place of a facet of a triangle that is nearest to ``point``."""
+    """Fill ``nearest`` (2,) with the place of a facet of a triangle nearest to ``point``."""
     start, end = cell_nodes[ends[0]], cell_nodes[ends[1]]
     edge_x, edge_y = nodes[end, 0] - nodes[start, 0], nodes[end, 1] - nodes[start, 1]
     along = ((point[0] - nodes[start, 0]) * edge_x + (point[1] - nodes[start, 1]) * edge_y) / (

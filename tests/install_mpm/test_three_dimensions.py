@@ -12,11 +12,20 @@ from install_mpm.background_mesh import (
     smallest_altitude,
 )
 from install_mpm.cell_fill import cell_geometry
-from install_mpm.cells import TET_EDGES, CellType, reference_cell
+from install_mpm.cells import (
+    TET_EDGES,
+    CellType,
+    reference_cell,
+    reference_gradients,
+    shape_functions,
+    sub_region_points,
+)
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises
-from install_mpm.conventions import Kinematics
+from install_mpm.conventions import Kinematics, rotation_matrix
 from install_mpm.integration_points import IntegrationPoints, empty_trial
+from install_mpm.interface import frames_around_axis
+from install_mpm.kernels.carry import nearest_integration_point
 from install_mpm.kernels.cell_records import CellOptions
 from install_mpm.kernels.equilibrium import evaluate_cells
 from install_mpm.kernels.locate import PROJECTED, locate_points
@@ -71,7 +80,7 @@ def integration_points(mesh, rng, soil):
         density=np.ones(n),
         volume_ratio=rng.uniform(0.9, 1.1, n),
         elastic_log_strain=(strain + strain.transpose(0, 2, 1)) / 2.0,
-        state_variables=dispatch.initial_state(soil, np.zeros(n)),
+        state_variables=dispatch.initial_state(soil, np.zeros(n), np.zeros((n, 3, 3))),
         material=np.zeros(n, dtype=np.int64),
     )
 
@@ -135,6 +144,68 @@ def test_mesh_of_tetrahedra_knows_its_neighbours_and_facets():
     assert volume == pytest.approx(6.0)
     middles = (corners + np.roll(corners, -1, axis=1)) / 2.0
     np.testing.assert_allclose(mesh.nodes[facet_edge_nodes(mesh, *boundary.T)], middles)
+
+
+def shapes_at(xi):
+    values, gradients = np.empty(10), np.empty((10, 3))
+    shape_functions(int(CellType.TET10), xi, values)
+    reference_gradients(int(CellType.TET10), xi, gradients)
+    return values, gradients
+
+
+def test_shape_functions_are_one_at_their_node():
+    vertices = np.vstack([np.zeros(3), np.eye(3)])
+    nodes = np.vstack([vertices, vertices[list(TET_EDGES)].mean(axis=1)])
+    np.testing.assert_allclose([shapes_at(node)[0] for node in nodes], np.eye(10), atol=1e-15)
+
+
+def test_quadratic_fields_and_their_gradients_are_reproduced(rng):
+    vertices = np.vstack([np.zeros(3), np.eye(3)])
+    nodes = np.vstack([vertices, vertices[list(TET_EDGES)].mean(axis=1)])
+    curvature, slope = rng.normal(size=(3, 3)), rng.normal(size=3)
+    nodal = np.einsum("ni,ij,nj->n", nodes, curvature, nodes) + nodes @ slope + 2.0
+    for xi in rng.dirichlet(np.ones(4), size=20)[:, 1:]:
+        values, gradients = shapes_at(xi)
+        assert values @ nodal == pytest.approx(xi @ curvature @ xi + slope @ xi + 2.0)
+        np.testing.assert_allclose(
+            nodal @ gradients, (curvature + curvature.T) @ xi + slope, atol=1e-12
+        )
+
+
+@pytest.mark.parametrize("per_direction", [1, 2])
+def test_seeds_fill_the_sub_regions(per_direction):
+    cell = reference_cell(CellType.TET10)
+    coordinates, shares = sub_region_points(cell, per_direction)
+    assert shares.sum() == pytest.approx(1.0)
+    np.testing.assert_allclose(shares @ coordinates, 0.25)
+    near = [nearest_integration_point(xi, cell.integration_coordinates) for xi in coordinates]
+    assert near == sorted(near)
+    assert np.bincount(near).tolist() == [per_direction**3] * 4
+
+
+def test_integration_rule_is_exact_for_quadratic_fields():
+    cell = reference_cell(CellType.TET10)
+    xi, weights = cell.integration_coordinates, cell.reference_volumes
+    assert weights.sum() == pytest.approx(1 / 6)
+    np.testing.assert_allclose(weights @ xi, 1 / 24)
+    second = np.einsum("q,qi,qj->ij", weights, xi, xi)
+    np.testing.assert_allclose(second, (np.ones((3, 3)) + np.eye(3)) / 120)
+
+
+def test_axes_of_interface_points_turn_with_the_pile(rng):
+    normals = rng.normal(size=(50, 3))
+    normals[:10] = (0.0, 0.0, 1.0)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    places, turn = rng.normal(size=(50, 3)), rotation_matrix(0.7, 3)
+    axes = frames_around_axis(normals, places, 0.0)
+    np.testing.assert_allclose(
+        axes @ axes.transpose(0, 2, 1), np.tile(np.eye(3), (50, 1, 1)), atol=1e-14
+    )
+    np.testing.assert_allclose(axes[:, 2], normals)
+    np.testing.assert_allclose(np.linalg.det(axes), 1.0)
+    turned = frames_around_axis(normals @ turn.T, places @ turn.T, 0.0)
+    np.testing.assert_allclose(turned, axes @ turn.T, atol=1e-14)
+    np.testing.assert_allclose(frames_around_axis(normals, places, 0.7), turned, atol=1e-14)
 
 
 def test_quality_is_one_for_a_regular_tetrahedron():
