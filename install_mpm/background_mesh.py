@@ -34,7 +34,7 @@ def make_background_mesh(nodes: np.ndarray, cell_nodes: np.ndarray) -> Backgroun
     Triangles have 3 or 6 nodes, tetrahedra 10.
     """
     dim = nodes.shape[1]
-    return straightened(
+    mesh = straightened(
         BackgroundMesh(
             nodes=np.ascontiguousarray(nodes, dtype=np.float64),
             reference_nodes=np.ascontiguousarray(nodes, dtype=np.float64),
@@ -42,6 +42,7 @@ def make_background_mesh(nodes: np.ndarray, cell_nodes: np.ndarray) -> Backgroun
             cell_neighbours=_neighbours(cell_nodes[:, : dim + 1]),
         )
     )
+    return mesh._replace(reference_nodes=mesh.nodes.copy())
 
 
 FACETS_OPPOSITE = {3: [[1, 2], [2, 0], [0, 1]], 4: [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]}

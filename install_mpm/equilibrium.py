@@ -12,7 +12,7 @@ from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.discretisation import Discretisation
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
-from install_mpm.interface import InterfacePoints, local_axes
+from install_mpm.interface import Contact, InterfacePoints, soil_displacement, step_axes
 from install_mpm.kernels.carry import body_force
 from install_mpm.kernels.cell_records import CellOptions
 from install_mpm.kernels.equilibrium import evaluate_cells
@@ -46,6 +46,8 @@ class StepEquilibrium(NamedTuple):
     """Interface traction at the end of the step, local axes, (n_interface_points, dim) in Pa."""
     reaction: np.ndarray
     """Support force at prescribed dofs, zero elsewhere, (n_nodes, dim) in N."""
+    contact: Contact
+    """What pile and soil do to each other at the end of the step."""
 
 
 def youngs_modulus(materials: Materials) -> np.ndarray:
@@ -109,6 +111,7 @@ def find_equilibrium(
         system.trial,
         system.traction,
         reaction,
+        system.contact(),
     )
 
 
@@ -148,8 +151,7 @@ class _StepSystem:
         self.interface, self.is_prescribed = interface, prescribed.is_prescribed
         self.options = cell_options(fill, points, model)
         self.pile_displacement = rigid_displacement(motion, interface.position)
-        self.mid_frame = local_axes(interface, motion.rotation / 2.0)
-        self.end_frame = local_axes(interface, motion.rotation)
+        self.rotation = motion.rotation
         self.trial = empty_trial(points)
         self.traction = np.zeros_like(interface.traction)
         self.cell_force = np.zeros((n_cells, n_cell_nodes, dim))
@@ -192,15 +194,28 @@ class _StepSystem:
         residual = np.where(self.is_free.ravel(), out_of_balance, 0.0)
         return Evaluation(residual, values, float(reference) or 1.0, is_admissible)
 
+    def contact(self) -> Contact:
+        """Return the forces between pile and soil at the last evaluation."""
+        area = (self.interface.area * self.interface.covered)[:, None]
+        return Contact(
+            self.interface.position + self.soil_displacement,
+            -area * np.einsum("pij,pi->pj", self.axes.traction, self.traction),
+            -area * self.traction[:, -1:] * self.axes.traction[:, -1],
+        )
+
     def _evaluate_blocks(self, nodal: np.ndarray) -> None:
         """Fill force and stiffness of all cells and interface elements."""
         evaluate_cells(
             self.mesh.cell_nodes, self.fill.is_active, self.points, nodal, self.materials,
             self.options, self.cell_force, self.cell_stiffness, self.trial,
         )  # fmt: skip
+        self.soil_displacement = soil_displacement(self.model.elements, nodal)
+        self.axes = step_axes(
+            self.interface, self.model.elements.is_swept, self.rotation, self.soil_displacement
+        )
         evaluate_interface(
             self.model.elements.nodes, self.model.elements.shape_values,
             self.interface.area * self.interface.covered, self.interface.parameters,
-            self.interface.traction, self.mid_frame, self.end_frame, self.pile_displacement,
+            self.interface.traction, self.axes, self.pile_displacement,
             nodal, self.element_force, self.element_stiffness, self.traction,
         )  # fmt: skip

@@ -29,7 +29,13 @@ class InterfaceElements(NamedTuple):
     shape_values: np.ndarray
     """Shape functions of a facet at its integration points, (n_facet_points, n_facet_nodes)."""
     weights: np.ndarray
-    """Weights of the rule on a facet of unit length, (n_facet_points,)."""
+    """Weights of the rule on a facet of unit size, (n_facet_points,)."""
+    is_swept: np.ndarray | None = None
+    """Points (n_points,) of surfaces that a rotation of the pile maps onto themselves; None: none.
+
+    On a cylinder, a cone or a helicoid the normal is that of the place where the *soil* is, on any
+    other surface it turns with the pile.
+    """
 
 
 class InterfacePoints(NamedTuple):
@@ -111,10 +117,6 @@ def frames(normals: np.ndarray, rotation: float) -> np.ndarray:
     """Return the local axes (n, 2, 2) of interface points in two dimensions.
 
     Rows tangent and normal, turned by ``rotation``.
-
-    The gap is measured in the frame of the middle of a step, the traction acts in that of its end:
-    a chord of a circle has no normal component in the mid-step frame, and a false penetration in
-    any other.
     """
     normal = normals @ rotation_matrix(rotation, 2).T
     tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
@@ -141,11 +143,85 @@ def frames_around_axis(normals: np.ndarray, positions: np.ndarray, rotation: flo
     return axes @ rotation_matrix(rotation, 3).T
 
 
-def local_axes(points: InterfacePoints, rotation: float = 0.0) -> np.ndarray:
-    """Return the local axes (n, dim, dim) of the points after a ``rotation`` of the pile in rad."""
+def local_axes(points: InterfacePoints) -> np.ndarray:
+    """Return the local axes (n, dim, dim) of the points: tangents first, normal last."""
     if points.normal.shape[1] == 2:
-        return frames(points.normal, rotation)
-    return frames_around_axis(points.normal, points.position, rotation)
+        return frames(points.normal, 0.0)
+    return frames_around_axis(points.normal, points.position, 0.0)
+
+
+class StepAxes(NamedTuple):
+    """Local axes (n, dim, dim) of the interface points in a step."""
+
+    slip: np.ndarray
+    """In which the slip of the step is measured: those of the middle of the way.
+
+    A chord of a circle has no component along the normal of its middle, and a false penetration
+    along any other.
+    """
+    slip_change: np.ndarray
+    """By which the slip changes with the displacement of the soil."""
+    traction: np.ndarray
+    """In which the traction acts on the soil at the end of the step."""
+
+
+def step_axes(
+    points: InterfacePoints, is_swept: np.ndarray | None, rotation: float, soil: np.ndarray
+) -> StepAxes:
+    """Return the local axes in a step in which the pile turns by ``rotation`` (rad).
+
+    ``soil`` (n, dim) is the displacement in m of the soil at the points.  On a surface that is
+    swept onto itself the soil meets the normal of the place where it is, so that pressure on a
+    cylinder has no torque however far the soil stays behind.
+    """
+    start = local_axes(points)
+    turn = np.full(len(start), rotation)
+    if is_swept is not None and rotation:
+        turn = np.where(is_swept, _polar_change(points.position, soil), turn)
+    slip = _turned(start, (rotation + turn) / 2.0)
+    traction = _turned(start, turn)
+    change = slip.copy()
+    if is_swept is not None:
+        change[is_swept, -1] = traction[is_swept, -1]
+    return StepAxes(slip, change, traction)
+
+
+def _polar_change(position: np.ndarray, displacement: np.ndarray) -> np.ndarray:
+    """Return the change (n,) in rad of the polar angle by a displacement (n, dim)."""
+    moved = position + displacement
+    cross = position[:, 0] * moved[:, 1] - position[:, 1] * moved[:, 0]
+    change: np.ndarray = np.arctan2(cross, (position[:, :2] * moved[:, :2]).sum(axis=1))
+    return change
+
+
+def _turned(axes: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Return local ``axes`` (n, dim, dim) turned by ``angle`` (n,) in rad, each by its own."""
+    if not angle.any():
+        return axes
+    cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    turned = axes.copy()
+    turned[:, :, 0] = cosine * axes[:, :, 0] - sine * axes[:, :, 1]
+    turned[:, :, 1] = sine * axes[:, :, 0] + cosine * axes[:, :, 1]
+    return turned
+
+
+class Contact(NamedTuple):
+    """Forces between pile and soil at the interface points at the end of a step."""
+
+    position: np.ndarray
+    """Where they act: place of the soil, (n, dim) in m."""
+    force: np.ndarray
+    """Of the soil on the pile, (n, dim) in N."""
+    normal_force: np.ndarray
+    """Its part along the normal, (n, dim) in N."""
+
+
+def soil_displacement(elements: InterfaceElements, displacement: np.ndarray) -> np.ndarray:
+    """Return the displacement (n_points, dim) in m of the soil at the interface points."""
+    n_facet_nodes = elements.shape_values.shape[1]
+    own = displacement[elements.nodes[:, :n_facet_nodes]]
+    of_soil: np.ndarray = np.einsum("qa,eai->eqi", elements.shape_values, own)
+    return of_soil.reshape(-1, displacement.shape[1])
 
 
 def global_traction(points: InterfacePoints) -> np.ndarray:
@@ -164,9 +240,3 @@ def reaction(points: InterfacePoints, selected: np.ndarray | None = None) -> np.
     """Return the force (dim,) in N of the soil on the pile, over ``selected`` points or all."""
     force = force_on_pile(points)
     return np.asarray(force.sum(axis=0) if selected is None else force[selected].sum(axis=0))
-
-
-def moment(points: InterfacePoints, selected: np.ndarray | None = None) -> np.ndarray:
-    """Return the moment (3,) in N m about the origin of the soil on the pile in space."""
-    moments = np.cross(points.position, force_on_pile(points))
-    return np.asarray(moments.sum(axis=0) if selected is None else moments[selected].sum(axis=0))

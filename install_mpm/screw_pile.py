@@ -101,6 +101,15 @@ def first_part(helix_index: int) -> int:
     return len(PARTS_OF_PILE) + helix_index * len(PARTS_OF_HELIX)
 
 
+def edge_parts(pile: ScrewPile) -> list[int]:
+    """Return the numbers of the leading and trailing edges: they cut through the soil."""
+    return [
+        first_part(n) + edge
+        for n in range(len(pile.helices))
+        for edge in (LEADING_EDGE, TRAILING_EDGE)
+    ]
+
+
 def winding_angle(pile: ScrewPile, helix: Helix, points: np.ndarray) -> np.ndarray:
     """Return the winding angle (n,) in rad of ``points`` (n, 3): of the turn nearest in height."""
     angle = np.mod(pile.sense * np.arctan2(points[:, 1], points[:, 0]), 2.0 * np.pi)
