@@ -19,7 +19,6 @@ from install_mpm.constitutive.parameters import (
     NeoHookean,
     SoilParameters,
     Tresca,
-    UndrainedClay,
     VonMises,
 )
 
@@ -74,11 +73,18 @@ def state_variable_names(soil: SoilParameters) -> tuple[str, ...]:
     return names
 
 
-def initial_state(soil: SoilParameters, depth: np.ndarray) -> np.ndarray:
-    """Return the state variables (n, n_state) of undisturbed soil at ``depth`` (n,) in m."""
-    if isinstance(soil, UndrainedClay):
-        return von_mises.initial_state(soil, depth)
-    return np.zeros((len(depth), 0))
+def initial_state(soil: SoilParameters, depth: np.ndarray, stress: np.ndarray) -> np.ndarray:
+    """Return the state variables (n, n_state) of undisturbed soil.
+
+    Parameters
+    ----------
+    depth
+        Depth (n,) in m below the surface.
+    stress
+        Initial Cauchy stress (n, 3, 3) in Pa, effective if there is pore water.
+    """
+    state: np.ndarray = MODULE_OF[MODEL_OF[type(soil)]].initial_state(soil, depth, stress)
+    return state
 
 
 @jit
@@ -125,12 +131,12 @@ def update_stress(
 
 
 @jit
-def elastic_strain_from_stress(model, stress, parameters, elastic_strain):
-    """Fill the elastic strain (6,) of ``stress`` (6,) in Pa."""
+def elastic_strain_from_stress(model, stress, parameters, state, elastic_strain):
+    """Fill the elastic strain (6,) of ``stress`` (6,) in Pa in soil of ``state`` (n_state,)."""
     if model == _NEO_HOOKEAN:
-        neo_hookean.elastic_strain_from_stress(stress, parameters, elastic_strain)
+        neo_hookean.elastic_strain_from_stress(stress, parameters, state, elastic_strain)
         return
-    elastic.elastic_strain_from_stress(stress, parameters, elastic_strain)
+    elastic.elastic_strain_from_stress(stress, parameters, state, elastic_strain)
 
 
 @jit
@@ -167,12 +173,16 @@ def update_all(
 
 
 @parallel_jit
-def elastic_strain_from_stress_all(materials, material, stress, elastic_strain):
-    """Fill ``elastic_strain`` (n, 6) from ``stress`` (n, 6) in Pa at all points."""
+def elastic_strain_from_stress_all(materials, material, stress, state, elastic_strain):
+    """Fill ``elastic_strain`` (n, 6) from ``stress`` (n, 6) in Pa and ``state`` at all points."""
     for p in prange(material.shape[0]):
         row = material[p]
         elastic_strain_from_stress(
-            materials.model[row], stress[p], materials.parameters[row], elastic_strain[p]
+            materials.model[row],
+            stress[p],
+            materials.parameters[row],
+            state[p],
+            elastic_strain[p],
         )
 
 
