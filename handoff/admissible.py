@@ -31,7 +31,10 @@ class YieldCorrections(NamedTuple):
 
 
 def admissible_state(
-    ground: GroundProfile, interface: CoulombInterface, interface_positions: np.ndarray, state: FEState
+    ground: GroundProfile,
+    interface: CoulombInterface,
+    interface_positions: np.ndarray,
+    state: FEState,
 ) -> tuple[FEState, YieldCorrections]:
     """Return the state with every stress inside its yield surface and every traction its limit.
 

@@ -21,9 +21,10 @@ def geostatic_state(
     interface_positions: np.ndarray,
     interface_normals: np.ndarray,
 ) -> FEState:
-    """Return the undisturbed state, with the soil of its layer, at integration points (n_q, 2) and interface points (n_i, 2).
+    """Return the undisturbed state at integration points (n_q, 2) and interface points (n_i, 2).
 
-    The interface carries the traction that the geostatic stress exerts on its plane.
+    Each integration point has the soil of the layer in which it lies.  The interface carries the
+    traction that the geostatic stress exerts on its plane.
     """
     state = undisturbed_state(ground, integration_positions[:, VERTICAL], VERTICAL)
     return FEState(
@@ -36,7 +37,9 @@ def geostatic_state(
     )
 
 
-def geostatic_traction(ground: GroundProfile, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
+def geostatic_traction(
+    ground: GroundProfile, positions: np.ndarray, normals: np.ndarray
+) -> np.ndarray:
     """Return the traction (n, 2) on the soil, (tangential, normal), of the geostatic stress."""
     stress = geostatic_stress(ground, positions[:, VERTICAL], VERTICAL)[:, :2, :2]
     traction = np.einsum("nij,nj->ni", stress, normals)

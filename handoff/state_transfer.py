@@ -51,7 +51,7 @@ def state_map(
 
 
 def mapped(state_map: StateMap, difference: np.ndarray, geostatic: np.ndarray) -> np.ndarray:
-    """Return ``geostatic`` values (n_q, ...) plus the ``difference`` (p, ...) of the points to them.
+    """Return ``geostatic`` values (n_q, ...) plus the ``difference`` (p, ...) of points to them.
 
     The difference fades to zero far from every material point.  Undisturbed ground comes out
     exactly, whatever its layers and however its state varies with the depth.
@@ -62,7 +62,10 @@ def mapped(state_map: StateMap, difference: np.ndarray, geostatic: np.ndarray) -
 
 
 def transfer_state(
-    installed: InstalledState, ground: GroundProfile, problem: EquilibriumProblem, state_map: StateMap
+    installed: InstalledState,
+    ground: GroundProfile,
+    problem: EquilibriumProblem,
+    state_map: StateMap,
 ) -> FEState:
     """Return the installed state at the points of ``problem``, neither admissible nor balanced yet.
 

@@ -22,7 +22,9 @@ STRENGTHS = 4.0
 """Amplitude A of the Airy field over the undrained shear strength at the tip."""
 
 
-def airy_stress(ground: GroundProfile, pile: Pile, tip_depth: float, positions: np.ndarray) -> np.ndarray:
+def airy_stress(
+    ground: GroundProfile, pile: Pile, tip_depth: float, positions: np.ndarray
+) -> np.ndarray:
     """Return the self-equilibrated part (n, 3, 3) in Pa of the synthetic field at (n, 2)."""
     strength = undrained_shear_strength(ground, np.array([-tip_depth]))[0]
     overburden = -geostatic_stress(ground, np.array([-tip_depth]), VERTICAL)[0, VERTICAL, VERTICAL]
@@ -54,7 +56,6 @@ def synthetic_errors(
     Both are errors over the norm of the Airy part alone, because the geostatic part, though far
     larger, is mapped exactly.  Near is within one pile width of the pile.
     """
-
     at_points = airy_stress(ground, pile, tip_depth, point_positions)
     reference = airy_stress(ground, pile, tip_depth, targets)
     error = mapped(state_map, at_points, np.zeros_like(reference)) - reference

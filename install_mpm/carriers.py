@@ -101,7 +101,10 @@ def integration_points(
         volume_ratio=np.exp(log_ratio / own_volume).ravel(),
         elastic_log_strain=(strain / own_volume[:, :, None, None]).reshape(-1, 3, 3),
         state_variables=_within_bounds(
-            points, material.ravel(), (state / own_volume[:, :, None]).reshape(-1, n_state), gradient
+            points,
+            material.ravel(),
+            (state / own_volume[:, :, None]).reshape(-1, n_state),
+            gradient,
         ),
         material=material.ravel(),
     ), is_empty & fill.is_active[:, None]

@@ -154,11 +154,15 @@ def reference_state(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return stress (n, 3, 3) in Pa and state variables (n, n_state) that soil is compared with.
 
-    The stress is geostatic at ``height`` with the K0 of ``material``, the state that of undisturbed
-    soil of its stratum there, or at the nearest end of the stratum.
+    The stress is geostatic at ``height`` with the K0 of ``material``, and goes on in a straight
+    line above the surface.  The state is that of undisturbed soil of its stratum there, or at the
+    nearest end of the stratum.
     """
     rows = strata(ground)
     tops, bottoms = (np.array([getattr(row, end) for row in rows]) for end in ("top", "bottom"))
     inside = np.clip(height, -bottoms[material], -tops[material])
     state = undisturbed_state(ground, inside, vertical, material).state_variables
-    return geostatic_stress(ground, height, vertical, material), state
+    stress = geostatic_stress(ground, height, vertical, material)
+    gradient = geostatic_gradient(ground, vertical).stress
+    stress += np.maximum(height, 0.0)[:, None, None] * gradient[material]
+    return stress, state

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
@@ -113,7 +114,7 @@ def strata(ground: GroundProfile) -> tuple[Stratum, ...]:
     for layer, end in zip(ground.layers, ends, strict=True):
         k0 = _k0_of(layer)
         cuts = [layer.top, water, end] if layer.top < water < end else [layer.top, end]
-        for top, bottom in zip(cuts, cuts[1:], strict=False):
+        for top, bottom in pairwise(cuts):
             unit_weight = layer.unit_weight - (WATER_UNIT_WEIGHT if top >= water else 0.0)
             if unit_weight < 0.0:
                 raise GroundError(
@@ -134,7 +135,7 @@ def _check_order(layers: tuple[Layer, ...]) -> None:
             "its top must be the surface, 0 m"
         )
     names: set[str] = set()
-    for upper, lower in zip(layers, layers[1:], strict=False):
+    for upper, lower in pairwise(layers):
         names.add(upper.name)
         if lower.top <= upper.top:
             raise GroundError(

@@ -81,7 +81,9 @@ def initial_interface(
     )
 
 
-def geostatic_traction(ground: GroundProfile, position: np.ndarray, normal: np.ndarray) -> np.ndarray:
+def geostatic_traction(
+    ground: GroundProfile, position: np.ndarray, normal: np.ndarray
+) -> np.ndarray:
     """Return the local traction (n, 2) in Pa of undisturbed ground on surfaces: t = R sigma n."""
     dim = position.shape[1]
     stress = geostatic_stress(ground, position[:, -1], dim - 1)[:, :dim, :dim]

@@ -12,13 +12,14 @@ from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises
 from install_mpm.equilibrium import Discretisation, Prescribed
+from install_mpm.geostatic import elastic_strain_of, geostatic_gradient
 from install_mpm.ground import Ground, geostatic_stress
 from install_mpm.interface import no_interface
 from install_mpm.linear_solvers import superlu
 from install_mpm.material_points import MaterialPoints
 from install_mpm.options import BackgroundMeshOptions, Box, Numerics
 from install_mpm.pile import Pile, PileMotion
-from install_mpm.seeding import elastic_strain_of, geostatic_gradient, seed_points
+from install_mpm.seeding import seed_points
 from install_mpm.step import StepResult, step
 
 Builder = Callable[..., BackgroundMesh]
