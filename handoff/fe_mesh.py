@@ -74,8 +74,9 @@ def make_mesh(
 ) -> FEMesh:
     """Return the mesh of the soil around the pile whose tip is ``tip_depth`` m deep.
 
-    It conforms to the ``boundaries`` between undisturbed layers, depths in m.  Edges are ``size_at_pile`` long at the corner of the pile, twice that along base and shaft and
-    grow to ``size_far``.
+    It conforms to the ``boundaries`` between undisturbed layers, depths in m.  Edges are
+    ``size_at_pile`` long at the corner of the pile, twice that along base and shaft and grow to
+    ``size_far``.
 
     Raises
     ------
@@ -132,7 +133,7 @@ def _check_geometry(pile: Pile, tip_depth: float, box: Box, options: HandoffOpti
 def _outlines(
     pile: Pile, tip_depth: float, box: Box, boundaries: Sequence[float]
 ) -> list[np.ndarray]:
-    """Return the corners of the soil, anticlockwise, the band with the tip from that on the axis."""
+    """Return the corners of the soil, anticlockwise; the band with the tip begins at its axis."""
     tip = np.array([0.0, -tip_depth])
     bands = soil_bands(pile, tip_depth, box, boundaries)
     starts = [int(np.argmax((band == tip).all(axis=1))) for band in bands]

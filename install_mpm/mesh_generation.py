@@ -23,8 +23,8 @@ def generate_background_mesh(
     """Return a mesh of 6-node triangles conforming to the pile and to the level ground surface.
 
     It also conforms to the ``boundaries`` of layers, depths in m, so that geostatic stress, which
-    jumps there or changes its slope, is integrated exactly.  It covers the ground and the headroom above it, and is finest at the base and along the shaft of
-    the pile.
+    jumps there or changes its slope, is integrated exactly.  It covers the ground and the headroom
+    above it, and is finest at the base and along the shaft of the pile.
     """
     gmsh.initialize(interruptible=False)
     try:

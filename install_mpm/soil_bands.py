@@ -1,4 +1,4 @@
-"""The soil beside and below a pile as level bands: outlines that meshes of layered ground follow."""
+"""The soil beside and below a pile as level bands, which meshes of layered ground follow."""
 
 from __future__ import annotations
 
