@@ -13,9 +13,18 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm._jit import jit, parallel_jit, prange
-from install_mpm.constitutive import elastic, neo_hookean, tresca, von_mises
+from install_mpm.constitutive import (
+    drucker_prager,
+    elastic,
+    mohr_coulomb,
+    neo_hookean,
+    tresca,
+    von_mises,
+)
 from install_mpm.constitutive.parameters import (
+    DruckerPrager,
     HenckyElastic,
+    MohrCoulomb,
     NeoHookean,
     SoilParameters,
     Tresca,
@@ -30,6 +39,8 @@ class Model(IntEnum):
     VON_MISES = 1
     NEO_HOOKEAN = 2
     TRESCA = 3
+    MOHR_COULOMB = 4
+    DRUCKER_PRAGER = 5
 
 
 MODEL_OF = {
@@ -37,15 +48,20 @@ MODEL_OF = {
     VonMises: Model.VON_MISES,
     NeoHookean: Model.NEO_HOOKEAN,
     Tresca: Model.TRESCA,
+    MohrCoulomb: Model.MOHR_COULOMB,
+    DruckerPrager: Model.DRUCKER_PRAGER,
 }
 MODULE_OF = {
     Model.HENCKY_ELASTIC: elastic,
     Model.VON_MISES: von_mises,
     Model.NEO_HOOKEAN: neo_hookean,
     Model.TRESCA: tresca,
+    Model.MOHR_COULOMB: mohr_coulomb,
+    Model.DRUCKER_PRAGER: drucker_prager,
 }
 _VON_MISES, _NEO_HOOKEAN = int(Model.VON_MISES), int(Model.NEO_HOOKEAN)
 _TRESCA = int(Model.TRESCA)
+_MOHR_COULOMB, _DRUCKER_PRAGER = int(Model.MOHR_COULOMB), int(Model.DRUCKER_PRAGER)
 
 
 class Materials(NamedTuple):
@@ -131,6 +147,14 @@ def update_stress(
         return tresca.update_stress(
             trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
         )
+    if model == _MOHR_COULOMB:
+        return mohr_coulomb.update_stress(
+            trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
+        )
+    if model == _DRUCKER_PRAGER:
+        return drucker_prager.update_stress(
+            trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
+        )
     return elastic.update_stress(
         trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
     )
@@ -152,6 +176,10 @@ def yield_function(model, stress, parameters, state):
         return von_mises.yield_function(stress, parameters, state)
     if model == _TRESCA:
         return tresca.yield_function(stress, parameters, state)
+    if model == _MOHR_COULOMB:
+        return mohr_coulomb.yield_function(stress, parameters, state)
+    if model == _DRUCKER_PRAGER:
+        return drucker_prager.yield_function(stress, parameters, state)
     return elastic.yield_function(stress, parameters, state)
 
 

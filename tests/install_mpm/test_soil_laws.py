@@ -9,7 +9,14 @@ from scipy.linalg import expm
 
 from install_mpm.constitutive import dispatch, tresca
 from install_mpm.constitutive.dispatch import Model
-from install_mpm.constitutive.parameters import HenckyElastic, NeoHookean, Tresca, VonMises
+from install_mpm.constitutive.parameters import (
+    DruckerPrager,
+    HenckyElastic,
+    MohrCoulomb,
+    NeoHookean,
+    Tresca,
+    VonMises,
+)
 from install_mpm.constitutive.state_variables import STATE_VARIABLES
 
 SOILS = {
@@ -17,6 +24,8 @@ SOILS = {
     Model.VON_MISES: VonMises(4e6, 0.3, 20e3, 2e3),
     Model.NEO_HOOKEAN: NeoHookean(4e6, 0.3),
     Model.TRESCA: Tresca(4e6, 0.3, 20e3, 2e3),
+    Model.MOHR_COULOMB: MohrCoulomb(4e6, 0.3, 20e3, 0.6, 0.2),
+    Model.DRUCKER_PRAGER: DruckerPrager(4e6, 0.3, 20e3, 0.6, 0.2),
 }
 SIZES = {"elastic": 1e-3, "plastic": 5e-2, "large": 1.0}
 """Norm of the trial strain; the strength is reached at a shear strain of about 1e-2."""
