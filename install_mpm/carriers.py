@@ -88,6 +88,7 @@ def integration_points(
         _mean_of_cell_where_empty(total, material, own_volume, is_empty)
     own_volume = np.where(is_empty, 1.0, own_volume)
     log_ratio, strain, state = sums
+    state = (state / own_volume[:, :, None]).reshape(own_volume.size, n_state)
     share = geometry.integration_volume
     volume = np.where(fill.is_interior[:, None], share, np.minimum(soil_volume, share))
     volume[~fill.is_active] = 0.0
@@ -100,12 +101,7 @@ def integration_points(
         density=_density(soil_mass, soil_volume, is_empty),
         volume_ratio=np.exp(log_ratio / own_volume).ravel(),
         elastic_log_strain=(strain / own_volume[:, :, None, None]).reshape(-1, 3, 3),
-        state_variables=_within_bounds(
-            points,
-            material.ravel(),
-            (state / own_volume[:, :, None]).reshape(-1, n_state),
-            gradient,
-        ),
+        state_variables=_within_bounds(points, material.ravel(), state, gradient),
         material=material.ravel(),
     ), is_empty & fill.is_active[:, None]
 

@@ -10,8 +10,11 @@ from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
 from install_mpm.constitutive.parameters import SoilParameters
 from install_mpm.discretisation import GeostaticGradient
-from install_mpm.ground import GroundProfile, geostatic_stress, material_at, strata
+from install_mpm.ground import GroundProfile, Layer, geostatic_stress, material_at, soils_of, strata
 from install_mpm.material_points import MaterialPoints
+
+YIELD_SLACK = 1e-9
+"""Yield function over stress that still counts as admissible: round-off of the initial state."""
 
 
 class GeostaticState(NamedTuple):
@@ -166,3 +169,30 @@ def reference_state(
     gradient = geostatic_gradient(ground, vertical).stress
     stress += np.maximum(height, 0.0)[:, None, None] * gradient[material]
     return stress, state
+
+
+def first_beyond_strength(ground: GroundProfile, depth: float) -> tuple[Layer, float] | None:
+    """Return the first layer down to ``depth`` in m, and where in it, K0 stress violates yield."""
+    heights = -np.unique(np.concatenate([_ends(ground, depth), np.linspace(0.0, depth, 101)]))
+    for row, stratum in enumerate(strata(ground)):
+        inside = (heights <= -stratum.top) & (heights >= -stratum.bottom)
+        places = heights[inside]
+        if len(places) == 0:
+            continue
+        material = np.full(len(places), row, dtype=np.int64)
+        state = undisturbed_state(ground, places, 1, material)
+        value, six_vectors = np.empty(len(places)), state.stress[:, ROW, COLUMN] * SCALE
+        dispatch.yield_function_all(
+            dispatch.pack(soils_of(ground)), material, np.ascontiguousarray(six_vectors),
+            state.state_variables, value,
+        )  # fmt: skip
+        beyond = value > YIELD_SLACK * np.abs(state.stress).max(axis=(1, 2))
+        if beyond.any():
+            return stratum.layer, float(-places[np.argmax(beyond)])
+    return None
+
+
+def _ends(ground: GroundProfile, depth: float) -> np.ndarray:
+    """Return the depths (n,) in m down to ``depth`` at which strata begin or end."""
+    ends = np.array([end for row in strata(ground) for end in (row.top, row.bottom)])
+    return ends[ends <= depth]

@@ -43,6 +43,9 @@ class Ground:
     """Depth of the water table; below it the stresses are effective ones and the ground weighs
     ``unit_weight`` less that of water.  Without it all stresses are total ones."""
 
+    def __post_init__(self) -> None:
+        strata(self)
+
     @property
     def layers(self) -> tuple[Layer, ...]:
         """The one layer of the ground."""
@@ -71,6 +74,9 @@ class LayeredGround:
     water_table: WaterTable = None
     """Depth of the water table; below it the stresses are effective ones and a layer weighs its
     ``unit_weight`` less that of water.  Without it all stresses are total ones."""
+
+    def __post_init__(self) -> None:
+        strata(self)
 
 
 GroundProfile = Ground | LayeredGround

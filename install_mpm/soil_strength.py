@@ -13,6 +13,11 @@ def friction_angle(soil: SoilParameters) -> float | None:
     return angle
 
 
+def has_undrained_shear_strength(soil: SoilParameters) -> bool:
+    """Return whether the law has an undrained shear strength."""
+    return isinstance(soil, UndrainedClay)
+
+
 def undrained_shear_strength(
     soil: SoilParameters, depth: np.ndarray, stress: np.ndarray
 ) -> np.ndarray:
