@@ -196,3 +196,20 @@ def _ends(ground: GroundProfile, depth: float) -> np.ndarray:
     """Return the depths (n,) in m down to ``depth`` at which strata begin or end."""
     ends = np.array([end for row in strata(ground) for end in (row.top, row.bottom)])
     return ends[ends <= depth]
+
+
+def named_state(
+    ground: GroundProfile, material: np.ndarray, state: np.ndarray, name: str
+) -> np.ndarray | None:
+    """Return the state variable ``name`` (n,) of points of soil ``material`` (n,).
+
+    ``state`` is (n, n_state).  None if a soil of the ground has no variable of that name.
+    """
+    columns = []
+    for stratum in strata(ground):
+        names = dispatch.state_variable_names(stratum.layer.soil)
+        if name not in names:
+            return None
+        columns.append(names.index(name))
+    values: np.ndarray = state[np.arange(len(state)), np.array(columns)[material]]
+    return values
