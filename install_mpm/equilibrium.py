@@ -46,6 +46,10 @@ class StepEquilibrium(NamedTuple):
     """Interface traction at the end of the step, local axes, (n_interface_points, dim) in Pa."""
     reaction: np.ndarray
     """Support force at prescribed dofs, zero elsewhere, (n_nodes, dim) in N."""
+    internal_force: np.ndarray
+    """Of the stresses at the end of the step, (n_nodes, dim) in N."""
+    external_force: np.ndarray
+    """Weight and nodal loads, (n_nodes, dim) in N."""
     contact: Contact
     """What pile and soil do to each other at the end of the step."""
 
@@ -111,6 +115,8 @@ def find_equilibrium(
         system.trial,
         system.traction,
         reaction,
+        system.internal,
+        system.external,
         system.contact(),
     )
 
@@ -159,6 +165,7 @@ class _StepSystem:
         self.element_force = np.zeros((n_elements, n_element_nodes, dim))
         self.element_stiffness = np.zeros((n_elements, n_element_nodes, dim, n_element_nodes, dim))
         self.external = np.zeros((n_nodes, dim))
+        self.internal = np.zeros((n_nodes, dim))
         self.out_of_balance = np.zeros((n_nodes, dim))
         body_force(model.cell.cell_type, mesh.cell_nodes, points, GRAVITY, self.external)
         if prescribed.force is not None:
@@ -187,6 +194,7 @@ class _StepSystem:
             scatter_force(force.reshape(dofs.shape), dofs, total)
             scatter_stiffness(stiffness.reshape(slots.shape), slots, values)
         constrain(pattern.indptr, pattern.indices, self.is_free.ravel(), values)
+        self.internal = internal.reshape(nodal.shape)
         out_of_balance = internal + interface - self.external.ravel()
         self.out_of_balance = out_of_balance.reshape(nodal.shape)
         supports = out_of_balance[self.is_prescribed.ravel()]

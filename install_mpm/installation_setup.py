@@ -16,7 +16,7 @@ from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient
 from install_mpm.geostatic import geostatic_gradient
 from install_mpm.ground import GroundProfile, soils_of
-from install_mpm.history import empty_history
+from install_mpm.history import History, empty_history
 from install_mpm.linear_solvers import SOLVERS
 from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
 from install_mpm.pile import Pile
@@ -97,7 +97,7 @@ def geostatic_state(
         background_mesh=mesh,
         interface=interface,
         pile=PileState(np.array(0.0), np.array(0.0), np.array(problem.pile.embedment), np.zeros(2)),
-        history=empty_history(),
+        history=empty_history(History),
         control=StepControl(
             np.array(problem.programme.step), np.array(0), np.array(0), np.zeros_like(mesh.nodes)
         ),

@@ -175,14 +175,16 @@ def step_axes(
     cylinder has no torque however far the soil stays behind.
     """
     start = local_axes(points)
-    turn = np.full(len(start), rotation)
-    if is_swept is not None and rotation:
-        turn = np.where(is_swept, _polar_change(points.position, soil), turn)
-    slip = _turned(start, (rotation + turn) / 2.0)
-    traction = _turned(start, turn)
+    if is_swept is None or not rotation:
+        slip = _turned(start, np.full(len(start), rotation / 2.0))
+        return StepAxes(slip, slip, _turned(start, np.full(len(start), rotation)))
+    of_soil = np.where(is_swept, _polar_change(points.position, soil), 0.0)
+    slip = _turned(start, (rotation + of_soil) / 2.0)
+    traction = _turned(start, np.where(is_swept, of_soil, rotation))
     change = slip.copy()
-    if is_swept is not None:
-        change[is_swept, -1] = traction[is_swept, -1]
+    change[is_swept, -1] = traction[is_swept, -1]
+    behind = np.where(is_swept, (rotation - of_soil) / 2.0, 0.0)
+    slip[:, -1] /= np.cos(behind)[:, None]  # so that motion along the radius counts in full
     return StepAxes(slip, change, traction)
 
 

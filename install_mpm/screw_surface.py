@@ -12,7 +12,7 @@ from install_mpm.background_mesh import (
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import rotation_matrix
-from install_mpm.ground import Ground, geostatic_stress, undrained_shear_strength
+from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
 from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule, local_axes
 from install_mpm.screw_pile import (
     PARTS_OF_PILE,
@@ -125,7 +125,7 @@ def initial_interface(
     part: np.ndarray,
     normals: np.ndarray,
     mesh: BackgroundMesh,
-    ground: Ground,
+    ground: GroundProfile,
     law: CoulombInterface,
 ) -> InterfacePoints:
     """Return the interface of a pile wished in place: the geostatic traction acts on its facets."""
@@ -150,7 +150,7 @@ def follow(
     normals: np.ndarray,
     angle: float,
     mesh: BackgroundMesh,
-    ground: Ground,
+    ground: GroundProfile,
     law: CoulombInterface,
 ) -> InterfacePoints:
     """Return the interface at its place on the moved mesh.
