@@ -50,6 +50,8 @@ ON_SURFACE = 1e-12
 """Excess of a stress that counts as on the cone, relative to q + M_b p."""
 APEX_STIFFNESS = 1e-7
 """Share of the elastic tangent that keeps the matrix regular at the apex, where there is none."""
+LARGEST_STRESS_RATIO = 2.25
+"""M_b never exceeds that of a friction angle of 55 degrees, more than any sand has."""
 REFERENCE_PRESSURE = 1e3
 """Pressure in Pa at which the critical void ratio is Gamma (Jefferies and Been 2016)."""
 
@@ -83,22 +85,26 @@ def initial_state(
 
 @jit
 def elastic_strain_from_stress(stress, parameters, state, elastic_strain):
-    """Fill ``elastic_strain`` (6,) of ``stress`` (6,) in Pa, with the shear modulus of ``state``."""
+    """Fill ``elastic_strain`` (6,) of ``stress`` (6,) in Pa with the shear modulus in ``state``."""
     strain_from_stress(stress, parameters, state[SHEAR], elastic_strain)
 
 
 @jit
 def peak_stress_ratio(pressure, log_volume, parameters):
-    """Return M_b and its derivative by p in 1/Pa; ``log_volume`` is ln(1 + e)."""
+    """Return M_b and its derivatives by p in 1/Pa and by ``log_volume``, which is ln(1 + e)."""
     lowest = parameters[3]
     critical = parameters[ALTITUDE] - parameters[CRITICAL_SLOPE] * np.log(
         max(pressure, lowest) / REFERENCE_PRESSURE
     )
     state_parameter = np.expm1(log_volume) - critical
     ratio = parameters[STRESS_RATIO] * np.exp(-parameters[STATE_FACTOR] * state_parameter)
+    if ratio >= LARGEST_STRESS_RATIO:
+        return LARGEST_STRESS_RATIO, 0.0, 0.0
+    by_volume = -parameters[STATE_FACTOR] * np.exp(log_volume) * ratio
     if pressure < lowest:
-        return ratio, 0.0
-    return ratio, -ratio * parameters[STATE_FACTOR] * parameters[CRITICAL_SLOPE] / pressure
+        return ratio, 0.0, by_volume
+    by_pressure = -ratio * parameters[STATE_FACTOR] * parameters[CRITICAL_SLOPE] / pressure
+    return ratio, by_pressure, by_volume
 
 
 @jit
@@ -106,7 +112,7 @@ def yield_function(stress, parameters, state):
     """Return f in Pa; zero or negative is admissible."""
     pressure, shear_stress = stress_invariants(stress)
     log_volume = state[LOG_VOLUME] + volumetric_strain(pressure, parameters)
-    ratio, _ = peak_stress_ratio(pressure, log_volume, parameters)
+    ratio, _, _ = peak_stress_ratio(pressure, log_volume, parameters)
     return shear_stress - ratio * pressure
 
 
@@ -117,7 +123,7 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
     sheared, shear = shear_invariant(trial_strain), state_old[SHEAR]
     log_volume = state_old[LOG_VOLUME] + volumetric
     pressure = mean_pressure(volumetric, parameters)
-    ratio, _ = peak_stress_ratio(pressure, log_volume, parameters)
+    ratio, _, _ = peak_stress_ratio(pressure, log_volume, parameters)
     if not np.isfinite(pressure + ratio + sheared):
         return NOT_FINITE
     state[:] = state_old
@@ -147,20 +153,19 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
 def _equation(elastic, volumetric, sheared, parameters, shear, log_volume, terms):
     """Return R = e - e_v,tr - D (e_q,tr - q / 3G) and fill ``terms`` (6,).
 
-    On the cone q = M_b p; ``terms``: dR/de, q in Pa, dq/de in Pa, D, M_b, plastic shear strain.
+    On the cone q = M_b p; ``terms``: dR/de, q in Pa, dq/de in Pa, D, dM_b/d ln(1 + e), plastic
+    shear strain.
     """
     pressure = mean_pressure(elastic, parameters)
-    ratio, by_pressure = peak_stress_ratio(pressure, log_volume, parameters)
+    ratio, by_pressure, by_volume = peak_stress_ratio(pressure, log_volume, parameters)
     slope = -bulk_modulus(pressure, parameters)
     flow = (parameters[STRESS_RATIO] - ratio) / parameters[FLOW]
     terms[1] = ratio * pressure
     terms[2] = (ratio + by_pressure * pressure) * slope
-    terms[3], terms[4] = flow, ratio
+    terms[3], terms[4] = flow, by_volume
     terms[5] = sheared - terms[1] / (3.0 * shear)
     terms[0] = (
-        1.0
-        + by_pressure * slope / parameters[FLOW] * terms[5]
-        + flow * terms[2] / (3.0 * shear)
+        1.0 + by_pressure * slope / parameters[FLOW] * terms[5] + flow * terms[2] / (3.0 * shear)
     )
     return elastic - volumetric - flow * terms[5]
 
@@ -209,12 +214,10 @@ def _fill_slopes(elastic, volumetric, sheared, parameters, shear, log_volume, sl
     _equation(elastic, volumetric, sheared, parameters, shear, log_volume, terms)
     pressure = mean_pressure(elastic, parameters)
     # the void ratio changes with the trial volume: d ln(1 + e) = d e_v,tr
-    by_volume = -parameters[STATE_FACTOR] * np.exp(log_volume) * terms[4]
+    by_volume = terms[4]
     shear_by_volume = by_volume * pressure
     residual_by_volume = (
-        -1.0
-        + by_volume / parameters[FLOW] * terms[5]
-        + terms[3] * shear_by_volume / (3.0 * shear)
+        -1.0 + by_volume / parameters[FLOW] * terms[5] + terms[3] * shear_by_volume / (3.0 * shear)
     )
     stiffness = bulk_modulus(pressure, parameters)
     by_volumetric, by_sheared = -residual_by_volume / terms[0], terms[3] / terms[0]

@@ -67,7 +67,7 @@ def initial_state(parameters: ModifiedCamClay, depth: np.ndarray, stress: np.nda
     pressure = -np.trace(stress, axis1=1, axis2=2) / 3.0
     deviator = stress + pressure[:, None, None] * np.eye(3)
     squared = 1.5 * (deviator**2).sum(axis=(1, 2)) / parameters.critical_stress_ratio**2
-    size = pressure + squared / np.maximum(pressure, parameters.lowest_pressure)
+    size = pressure + squared / np.where(pressure > 0.0, pressure, np.inf)
     preconsolidation = (
         parameters.overconsolidation_ratio * size + parameters.pre_overburden_pressure
     )
@@ -77,7 +77,7 @@ def initial_state(parameters: ModifiedCamClay, depth: np.ndarray, stress: np.nda
 
 @jit
 def elastic_strain_from_stress(stress, parameters, state, elastic_strain):
-    """Fill ``elastic_strain`` (6,) of ``stress`` (6,) in Pa, with the shear modulus of ``state``."""
+    """Fill ``elastic_strain`` (6,) of ``stress`` (6,) in Pa with the shear modulus in ``state``."""
     strain_from_stress(stress, parameters, state[SHEAR], elastic_strain)
 
 
@@ -143,8 +143,8 @@ def _equations(elastic, multiplier, volumetric, sheared, parameters, shear, size
     equations[3] = -excess
     equations[4] = excess * slope - pressure * growth
     equations[5] = -2.0 * ratio * ratio * softening / (1.0 + softening * multiplier)
-    equations[6] = abs(elastic) + abs(volumetric) + abs(multiplier) * (
-        2.0 * abs(pressure) + current
+    equations[6] = (
+        abs(elastic) + abs(volumetric) + abs(multiplier) * (2.0 * abs(pressure) + current)
     )
     equations[7] = ratio * ratio + pressure * pressure + abs(pressure) * current
 
@@ -261,4 +261,3 @@ def _response(elastic, multiplier, volumetric, sheared, parameters, shear, size,
         slopes[column] = stiffness * strain
         slopes[2 + column] = loss * plastic + (secant if column == 1 else 0.0)
     return pressure, secant
-
