@@ -72,8 +72,10 @@ def state_variable_names(soil: SoilParameters) -> tuple[str, ...]:
 
 
 def is_linear_elastic(soil: SoilParameters) -> bool:
-    """Return whether stress is linear in the elastic strain, so that geostatic strain is too."""
+    """Return whether geostatic strain and state are linear: Hooke's law without pore fluid."""
     module = MODULE_OF[MODEL_OF[type(soil)]]
+    if pore_fluid_bulk_modulus(soil) > 0.0:
+        return False
     return module.elastic_strain_from_stress is elastic.elastic_strain_from_stress
 
 

@@ -162,7 +162,7 @@ class ModifiedCamClay:
 
     def __post_init__(self) -> None:
         """Refuse a normal compression line that is not steeper than the swelling lines."""
-        if self.swelling_index >= self.compression_index:
+        if self.swelling_index >= self.compression_index > 0.0:
             raise ValueError(
                 f"swelling_index {self.swelling_index:g} is not below compression_index"
                 f" {self.compression_index:g}; clay swells less than it was compressed"

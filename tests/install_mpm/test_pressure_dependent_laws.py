@@ -1,4 +1,4 @@
-"""Soil laws of effective stress: critical-state soils from stressed states, drained or undrained."""
+"""Soil laws of effective stress, from stressed states: critical-state soils, pore fluid."""
 
 from types import SimpleNamespace
 
@@ -86,7 +86,7 @@ def size_of(stress):
 
 
 def ground(soil, rng, n=FEW):
-    """States of ground with random mean pressure, 1 kPa to 1 MPa, and K0 (stress, state, strain)."""
+    """Stress, state and strain of ground of random vertical stress, 1 kPa to 1 MPa, and K0."""
     vertical, k0 = 10.0 ** rng.uniform(3.0, 6.0, n), rng.uniform(0.6, 1.2, n)
     stress = np.zeros((n, 3, 3))
     for axis in range(3):
@@ -328,7 +328,7 @@ def test_drained_sand_peaks_with_its_state_parameter_and_ends_critical():
         curve = triaxial(soil, 100e3, 3000, 1.2)
         deviator, volume = curve.T
         ratio = deviator / (100e3 + deviator / 3.0)
-        critical = 0.9 - 0.025 * np.log(0.1 + deviator[-1] / 3e3 + 99.9)
+        critical = 0.9 - 0.025 * np.log(100.0 + deviator[-1] / 3e3)
         assert (1.0 + void_ratio) * np.exp(volume[-1]) - 1.0 == pytest.approx(critical, abs=2e-3)
         assert ratio[-1] == pytest.approx(1.25, rel=5e-3)
         if void_ratio < 0.8:
