@@ -198,16 +198,10 @@ class CriticalStateSand:
 UndrainedClay = VonMises | Tresca
 """Soil laws whose strength is ``undrained_shear_strength``, a state variable."""
 
-SoilParameters = (
-    HenckyElastic
-    | NeoHookean
-    | VonMises
-    | Tresca
-    | MohrCoulomb
-    | DruckerPrager
-    | ModifiedCamClay
-    | CriticalStateSand
-)
+HookeanSoil = HenckyElastic | NeoHookean | VonMises | Tresca | MohrCoulomb | DruckerPrager
+"""Soil laws with a Young's modulus that does not depend on the pressure."""
+
+SoilParameters = HookeanSoil | ModifiedCamClay | CriticalStateSand
 """Every soil law a case can name; ``model`` tells them apart."""
 
 
