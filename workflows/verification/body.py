@@ -29,6 +29,9 @@ from install_mpm.seeding import seed_points
 from install_mpm.step import StepResult, step
 
 AT_REST = PileMotion(np.zeros(2))
+CELL_TYPES = {3: CellType.TRI3, 6: CellType.TRI6, 10: CellType.TET10}
+"""By number of nodes."""
+
 MoveMesh = Callable[[BackgroundMesh], BackgroundMesh]
 
 
@@ -52,7 +55,7 @@ def make_body(
     mesh: BackgroundMesh,
     ground: Ground,
     *,
-    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+    kinematics: Kinematics | None = None,
     scheme: Scheme = Scheme.CARRIERS,
     is_cell_weighted: bool = False,
     numerics: Numerics | None = None,
@@ -62,31 +65,30 @@ def make_body(
 ) -> Body:
     """Return a body of ``ground`` in the cells ``is_soil`` (n_cells,) of ``mesh`` (default z < 0).
 
-    With ``Scheme.QUADRATURE`` there is no mean dilatation and no volumetric term, as in the paper.
+    Cells of two dimensions are in plane strain unless ``kinematics`` says otherwise.  With
+    ``Scheme.QUADRATURE`` there is no mean dilatation and no volumetric term, as in the paper.
     """
-    n_cell_nodes = mesh.cell_nodes.shape[1]
-    cell = reference_cell(CellType.TRI6 if n_cell_nodes == 6 else CellType.TRI3)
-    elements, points = interface or no_interface(mesh.nodes.shape[1])
-    pattern = sparsity_pattern([mesh.cell_nodes, elements.nodes], len(mesh.nodes), 2)
+    dim = mesh.nodes.shape[1]
+    cell = reference_cell(CELL_TYPES[mesh.cell_nodes.shape[1]])
+    if kinematics is None:
+        kinematics = Kinematics.PLANE_STRAIN if dim == 2 else Kinematics.THREE_D
+    elements, points = interface or no_interface(dim)
+    pattern = sparsity_pattern([mesh.cell_nodes, elements.nodes], len(mesh.nodes), dim)
     model = Discretisation(
-        cell,
-        elements,
-        dispatch.pack([ground.soil]),
-        pattern,
-        mumps(pattern),
+        cell, elements, dispatch.pack([ground.soil]), pattern, mumps(pattern),
         numerics or Numerics(),
         kinematics=kinematics,
         has_mean_dilatation=scheme == Scheme.CARRIERS,
         scheme=scheme,
         is_cell_weighted=is_cell_weighted,
-    )
+    )  # fmt: skip
     return Body(
         seed_points(mesh, cell, ground, per_direction, kinematics=kinematics, is_soil=is_soil),
         mesh,
         points,
         np.zeros_like(mesh.nodes),
         model,
-        geostatic_gradient(ground, vertical=1),
+        geostatic_gradient(ground, vertical=dim - 1),
     )
 
 
@@ -99,19 +101,21 @@ def advance(
     body: Body,
     prescribed: Prescribed,
     *,
-    motion: PileMotion = AT_REST,
+    motion: PileMotion | None = None,
     move_mesh: MoveMesh = stay,
     name: str = "body",
 ) -> tuple[Body, StepResult]:
     """Return the body after a step, and the step.
 
-    The displacement of the step is the first trial of the next one.
+    The displacement of the step is the first trial of the next one.  Without ``motion`` a pile, if
+    there is one, is at rest.
 
     Raises
     ------
     ProblemNotSolvedError
         If the step does not converge.
     """
+    motion = motion or PileMotion(np.zeros(body.mesh.nodes.shape[1]))
     result = step(
         body.points, body.mesh, body.interface, motion, prescribed, body.start, move_mesh,
         body.model, body.gradient,
