@@ -6,7 +6,11 @@ The field balances gravity exactly: geostatic stress plus the field of an Airy f
     s_xx = phi,zz ,   s_zz = phi,xx ,   s_xz = -phi,xz ,   s_yy = (s_xx + s_zz) / 2 ,
 
 centred on the corners of the pile's tip, with L its half-width b: as steep as what a pile leaves
-behind.  The error of the map is known for it without any reference solution, at the actual points.
+behind.  In axisymmetry phi is a function of r and z and the field that balances is
+
+    s_rr = s_hoop = phi,zz ,   s_zz = phi,rr + phi,r / r ,   s_rz = -phi,rz .
+
+  The error of the map is known for it without any reference solution, at the actual points.
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ import numpy as np
 
 from handoff.geostatic import VERTICAL
 from handoff.state_transfer import StateMap, mapped
+from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground, geostatic_stress, undrained_shear_strength
 from install_mpm.pile import Pile
 
@@ -22,7 +27,13 @@ STRENGTHS = 4.0
 """Amplitude A of the Airy field over the undrained shear strength at the tip."""
 
 
-def airy_stress(ground: Ground, pile: Pile, tip_depth: float, positions: np.ndarray) -> np.ndarray:
+def airy_stress(
+    ground: Ground,
+    pile: Pile,
+    tip_depth: float,
+    positions: np.ndarray,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+) -> np.ndarray:
     """Return the self-equilibrated part (n, 3, 3) in Pa of the synthetic field at (n, 2)."""
     strength = undrained_shear_strength(ground, np.array([-tip_depth]))[0]
     amplitude = STRENGTHS * strength if strength > 0.0 else ground.unit_weight * tip_depth
@@ -34,8 +45,11 @@ def airy_stress(ground: Ground, pile: Pile, tip_depth: float, positions: np.ndar
         stress[:, 0, 0] += bell * (below**2 - 1.0)
         stress[:, 1, 1] += bell * (beside**2 - 1.0)
         stress[:, 0, 1] -= bell * beside * below
+        if kinematics == Kinematics.AXISYMMETRIC:
+            stress[:, 1, 1] -= bell * beside * pile.half_width / positions[:, 0]
     stress[:, 1, 0] = stress[:, 0, 1]
-    stress[:, 2, 2] = 0.5 * (stress[:, 0, 0] + stress[:, 1, 1])
+    in_plane = 0.5 * (stress[:, 0, 0] + stress[:, 1, 1])
+    stress[:, 2, 2] = stress[:, 0, 0] if kinematics == Kinematics.AXISYMMETRIC else in_plane
     return stress
 
 
@@ -47,6 +61,7 @@ def synthetic_errors(
     point_positions: np.ndarray,
     targets: np.ndarray,
     volumes: np.ndarray,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> tuple[float, float]:
     """Return the relative L2 errors of the mapped synthetic field, everywhere and near the pile.
 
@@ -56,12 +71,12 @@ def synthetic_errors(
 
     def field(positions: np.ndarray) -> np.ndarray:
         geostatic = geostatic_stress(ground, positions[:, VERTICAL], VERTICAL)
-        return geostatic + airy_stress(ground, pile, tip_depth, positions)
+        return geostatic + airy_stress(ground, pile, tip_depth, positions, kinematics)
 
     geostatic = geostatic_stress(ground, targets[:, VERTICAL], VERTICAL)
     error = mapped(state_map, field(point_positions), geostatic) - field(targets)
-    reference = airy_stress(ground, pile, tip_depth, targets)
-    is_near = distance_to_pile(pile, tip_depth, targets) <= 2.0 * pile.half_width
+    reference = airy_stress(ground, pile, tip_depth, targets, kinematics)
+    is_near = distance_to_pile(pile, tip_depth, targets) <= pile.width
     return (
         relative_norm(error, reference, volumes),
         relative_norm(error[is_near], reference[is_near], volumes[is_near]),

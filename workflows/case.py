@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,8 @@ class Case:
 
     title: str
     """What the results are called; a results directory belongs to one title."""
+    kinematics: Kinematics = field(default=Kinematics.PLANE_STRAIN, kw_only=True)
+    """A wall in plane strain, per metre run, or a round pile in axisymmetry."""
     ground: Ground
     pile: Pile
     interface: CoulombInterface
@@ -39,11 +41,6 @@ class Case:
     numerics: Numerics
     handoff: HandoffOptions
     service: ServiceOptions
-
-    @property
-    def kinematics(self) -> Kinematics:
-        """How displacements make strains; plane strain for now."""
-        return Kinematics.PLANE_STRAIN
 
     @property
     def final_tip_depth(self) -> float:

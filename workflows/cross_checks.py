@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from install_mpm.conventions import Kinematics
 from service_fe.options import Release
 from workflows.errors import CaseError
 
@@ -26,12 +27,21 @@ def check(case: Case) -> None:
     CaseError
         Naming the keys, their values and the remedy, at the first contradiction.
     """
+    _check_kinematics(case)
     _check_geometry(case)
     _check_mesh_sizes(case)
     _check_headroom(case)
     _check_step(case)
     _check_programmes(case)
     _check_solver(case)
+
+
+def _check_kinematics(case: Case) -> None:
+    if case.kinematics == Kinematics.THREE_D:
+        raise CaseError(
+            'kinematics is "three_d", but the stages are two-dimensional; '
+            'use "plane_strain" or "axisymmetric"'
+        )
 
 
 def _check_geometry(case: Case) -> None:
@@ -41,7 +51,7 @@ def _check_geometry(case: Case) -> None:
             f"pile.half_width {pile.half_width:g} m (with background_mesh.rigid_zone) does not fit "
             f"into box.width {box.width:g} m; make the box wider"
         )
-    margin = 2.0 * pile.half_width
+    margin = pile.width
     if case.final_tip_depth + margin > box.depth:
         raise CaseError(
             f"pile.embedment {pile.embedment:g} m and installation.penetration "

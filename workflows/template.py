@@ -30,7 +30,7 @@ WIDTH = 100
 HEADING = """\
 # A case of screwpile. Every key is listed; those with a default may be left out.
 # A quantity is a text with its unit, any unit of the right dimension: "20 kPa", "0.5 m", "24 deg".
-# Plane strain, half model x >= 0, z up, ground surface z = 0; displacements positive downward.
+# Half model x >= 0 (or r >= 0), z up, ground surface z = 0; displacements positive downward.
 
 """
 

@@ -15,6 +15,7 @@ from workflows.case import Case, case_text
 from workflows.directory import CHECKPOINT, INSTALLED
 from workflows.manifest import created_by
 from workflows.progress import Advance, no_progress
+from workflows.report_units import FORCE_UNIT
 from workflows.state_files import read_checked
 
 
@@ -31,13 +32,13 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         If a step does not converge; nothing is written but the last checkpoint.
     """
     checkpoint = directory / CHECKPOINT
-    start = _read_checkpoint(directory, case)
+    start, unit = _read_checkpoint(directory, case), FORCE_UNIT[case.kinematics]
 
     def observe(state: InstalledState, progress: InstallationProgress) -> None:
         advance(
             round(1e6 * progress.penetration),
             round(1e6 * progress.target),
-            f"{progress.penetration:.2f} m, {progress.crowd_force / 1e3:.0f} kN/m",
+            f"{progress.penetration:.2f} m, {progress.crowd_force / 1e3:.0f} {unit}",
         )
         if progress.load_step > 0 and progress.load_step % case.numerics.checkpoint_every == 0:
             write_installed_state(checkpoint, state, created_by())
@@ -51,6 +52,7 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         case.installation,
         case.numerics,
         case_text(case),
+        kinematics=case.kinematics,
         resume_from=start,
         observe=observe,
     )
@@ -59,7 +61,7 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     force = float(installed.history.crowd_force[-1])
     return [
         f"pile tip at {float(installed.pile.tip_depth):g} m, "
-        f"crowd force {force / 1e3:.1f} kN/m after {len(installed.history.penetration)} steps"
+        f"crowd force {force / 1e3:.1f} {unit} after {len(installed.history.penetration)} steps"
     ]
 
 
