@@ -12,7 +12,13 @@ from handoff.options import HandoffOptions
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground
-from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
+from install_mpm.options import (
+    BackgroundMeshOptions,
+    Box,
+    DiscretisationOptions,
+    InstallationProgramme,
+    Numerics,
+)
 from install_mpm.pile import Pile
 from service_fe.options import ServiceOptions
 from workflows.cross_checks import check
@@ -37,6 +43,7 @@ class Case:
     interface: CoulombInterface
     box: Box
     background_mesh: BackgroundMeshOptions
+    discretisation: DiscretisationOptions = field(default=DiscretisationOptions(), kw_only=True)
     installation: InstallationProgramme
     numerics: Numerics
     handoff: HandoffOptions

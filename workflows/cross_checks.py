@@ -28,6 +28,7 @@ def check(case: Case) -> None:
         Naming the keys, their values and the remedy, at the first contradiction.
     """
     _check_kinematics(case)
+    _check_discretisation(case)
     _check_geometry(case)
     _check_mesh_sizes(case)
     _check_headroom(case)
@@ -41,6 +42,15 @@ def _check_kinematics(case: Case) -> None:
         raise CaseError(
             'kinematics is "three_d", but the stages are two-dimensional; '
             'use "plane_strain" or "axisymmetric"'
+        )
+
+
+def _check_discretisation(case: Case) -> None:
+    options = case.discretisation
+    if options.cell_weighted and options.scheme != "quadrature":
+        raise CaseError(
+            "discretisation.cell_weighted scales points that are integration points; set "
+            'discretisation.scheme = "quadrature", or leave it out'
         )
 
 

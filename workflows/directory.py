@@ -28,8 +28,8 @@ VIEW_INSTALLED = "paraview/service_installed.vtu"
 VIEW_WISHED = "paraview/service_wished_in_place.vtu"
 
 INSTALL_KEYS = (
-    "kinematics", "ground", "pile", "interface", "box", "background_mesh", "installation",
-    "numerics",
+    "kinematics", "ground", "pile", "interface", "box", "background_mesh", "discretisation",
+    "installation", "numerics",
 )  # fmt: skip
 """Sections of the case that decide the installed state."""
 

@@ -53,12 +53,11 @@ def forecast(case: Case) -> Forecast:
     from install_mpm.cells import CellType, reference_cell, sub_region_points
     from install_mpm.mesh_generation import generate_background_mesh
 
-    mesh = generate_background_mesh(case.pile, case.box, case.background_mesh)
+    cells = CellType[case.discretisation.cells.upper()]
+    mesh = generate_background_mesh(case.pile, case.box, case.background_mesh, cells)
     fe_mesh = make_mesh(case.pile, case.final_tip_depth, case.box, case.handoff, level_surface())
     heights = mesh.nodes[mesh.cell_nodes[:, :3], 1].mean(axis=1)
-    _, shares = sub_region_points(
-        reference_cell(CellType.TRI6), case.background_mesh.points_per_direction
-    )
+    _, shares = sub_region_points(reference_cell(cells), case.background_mesh.points_per_direction)
     n_points = int((heights < 0.0).sum()) * len(shares)
     dim = dimension(case.kinematics)
     dofs, fe_dofs = dim * len(mesh.nodes), dim * len(fe_mesh.nodes)

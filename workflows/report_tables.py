@@ -21,7 +21,10 @@ CURVE_FIGURES = {
     "tangent_capacity": ("capacity where the tangents meet", "N"),
 }
 
-SECTIONS = ("ground", "pile", "interface", "box", "background_mesh", "installation", "handoff")
+SECTIONS = (
+    "ground", "pile", "interface", "box", "background_mesh", "discretisation", "installation",
+    "handoff",
+)  # fmt: skip
 """Sections of the case that the table shows; the rest stands in the text of the case."""
 
 NAMES = {"k0": "K₀", "youngs_modulus": "Young's modulus", "poissons_ratio": "Poisson's ratio"}

@@ -53,6 +53,7 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         case.numerics,
         case_text(case),
         kinematics=case.kinematics,
+        discretisation=case.discretisation,
         resume_from=start,
         observe=observe,
     )
