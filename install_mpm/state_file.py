@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
@@ -112,23 +114,34 @@ def read_header(file: h5py.File, file_format: str, version: int) -> str:
     return case_text
 
 
-def open_state_file(path: Path) -> h5py.File:
-    """Open an HDF5 state file for reading.
+@contextmanager
+def open_state_file(path: Path) -> Iterator[h5py.File]:
+    """Open an HDF5 state file for reading, to be used with ``with``.
+
+    Whatever the HDF5 library raises on damaged bytes while the file is open becomes one error.
 
     Raises
     ------
     StateFileError
-        If it does not exist, is truncated or is no HDF5 file.
+        If it does not exist, is truncated or damaged, or is no HDF5 file.
     """
     if not path.exists():
         raise StateFileError(f"{path}: no such file; run the stage that writes it first")
+    remedy = "write it again with the stage that makes it"
     try:
-        return h5py.File(path, "r")
-    except OSError as error:
+        file = h5py.File(path, "r")
+    except Exception as error:  # the library has many kinds
         raise StateFileError(
-            f"{path}: truncated or not an HDF5 file ({error}); "
-            "write it again with the stage that makes it"
+            f"{path}: truncated or not an HDF5 file ({error}); {remedy}"
         ) from error
+    try:
+        with file:
+            yield file
+    except StateFileError:
+        raise
+    except Exception as error:  # as above: attributes, names and data may all be damaged
+        kind = type(error).__name__
+        raise StateFileError(f"{path}: damaged ({kind}: {error}); {remedy}") from error
 
 
 def write_installed_state(path: Path, state: InstalledState, created_by: str) -> None:

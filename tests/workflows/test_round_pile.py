@@ -1,4 +1,4 @@
-"""The whole line in axisymmetry: forces of a whole round pile in every stage, in words and units."""
+"""The whole line in axisymmetry: forces of a whole round pile, in words and units too."""
 
 import json
 from pathlib import Path

@@ -263,8 +263,8 @@ def test_numbers_for_machines(with_area, monkeypatch, tmp_path):
     assert document.keys() == {"format", "version", "is_met", "problems"}
     (problem,) = document["problems"]
     assert problem.keys() == {
-        "id", "title", "is_met", "failure", "seconds", "inputs", "checks", "newton", "remarks",
-        "series", "residual_histories",
+        "id", "title", "case", "is_met", "failure", "seconds", "inputs", "checks", "newton",
+        "remarks", "series", "residual_histories",
     }  # fmt: skip
     assert problem["checks"] == [
         {"quantity": "area, m^2", "computed": 5.0, "reference": 4.0, "error": 0.25,

@@ -9,6 +9,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
+from install_mpm.history import History
 from install_mpm.installation import InstallationProgress, install
 from install_mpm.state_file import InstalledState, write_installed_state
 from workflows.case import Case, case_text
@@ -62,7 +65,20 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     force = float(installed.history.crowd_force[-1])
     return [
         f"pile tip at {float(installed.pile.tip_depth):g} m, "
-        f"crowd force {force / 1e3:.1f} {unit} after {len(installed.history.penetration)} steps"
+        f"crowd force {force / 1e3:.1f} {unit} after {len(installed.history.penetration)} steps",
+        *_renewals(installed.history, unit),
+    ]
+
+
+def _renewals(history: History, unit: str) -> list[str]:
+    """Return what new meshes have changed, in one line; none if there was none."""
+    stress = history.remesh_stress_change[np.isfinite(history.remesh_stress_change)]
+    force = history.remesh_force_change[np.isfinite(history.remesh_force_change)]
+    if not len(stress):
+        return []
+    return [
+        f"mesh made anew {len(stress)} times: stress changed by at most {100 * stress.max():.2g} %,"
+        f" crowd force by at most {np.abs(force).max() / 1e3:.2g} {unit}"
     ]
 
 

@@ -80,14 +80,20 @@ def read_assignments(problem: Problem, assignments: Iterable[str]) -> dict[str, 
             names = ", ".join(f"{one.name} = {one.format(one.default)}" for one in known.values())
             raise CaseError(f"{problem.identifier} has no parameter {name!r}; it has {names}")
         try:
-            values[name] = _value(known[name], text)
+            values[name] = read_value(known[name], text)
         except CaseError as error:
             raise CaseError(f"{problem.identifier}: {name}: {error}") from error
     return values
 
 
-def _value(parameter: Parameter, text: str) -> Any:
-    """Return ``text`` as a value of the parameter."""
+def read_value(parameter: Parameter, text: str) -> Any:
+    """Return ``text`` as a value of the parameter; a number without unit is in SI.
+
+    Raises
+    ------
+    CaseError
+        If it does not suit the parameter.
+    """
     kind = parameter.kind
     if kind is bool:
         return _choose(text, WORDS)
