@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
@@ -17,6 +15,7 @@ from install_mpm.history import History
 from install_mpm.interface import InterfacePoints
 from install_mpm.material_points import MaterialPoints
 from install_mpm.record import Field, StateFileError, read_record, write_record
+from install_mpm.seal import new_state_file, open_state_file
 
 FORMAT = "screwpile-installed-state"
 VERSION = 1
@@ -114,45 +113,13 @@ def read_header(file: h5py.File, file_format: str, version: int) -> str:
     return case_text
 
 
-@contextmanager
-def open_state_file(path: Path) -> Iterator[h5py.File]:
-    """Open an HDF5 state file for reading, to be used with ``with``.
-
-    Whatever the HDF5 library raises on damaged bytes while the file is open becomes one error.
-
-    Raises
-    ------
-    StateFileError
-        If it does not exist, is truncated or damaged, or is no HDF5 file.
-    """
-    if not path.exists():
-        raise StateFileError(f"{path}: no such file; run the stage that writes it first")
-    remedy = "write it again with the stage that makes it"
-    try:
-        file = h5py.File(path, "r")
-    except Exception as error:  # the library has many kinds
-        raise StateFileError(
-            f"{path}: truncated or not an HDF5 file ({error}); {remedy}"
-        ) from error
-    try:
-        with file:
-            yield file
-    except StateFileError:
-        raise
-    except Exception as error:  # as above: attributes, names and data may all be damaged
-        kind = type(error).__name__
-        raise StateFileError(f"{path}: damaged ({kind}: {error}); {remedy}") from error
-
-
 def write_installed_state(path: Path, state: InstalledState, created_by: str) -> None:
     """Write the state to ``path`` atomically: a reader sees the old file or the whole new one."""
-    partial = path.with_suffix(path.suffix + ".partial")
-    with h5py.File(partial, "w") as file:
+    with new_state_file(path) as file:
         write_header(file, FORMAT, VERSION, state.case_text, created_by)
         file.attrs["kinematics"] = state.kinematics.name
         for name in RECORDS:
             write_record(file.create_group(name), getattr(state, name))
-    partial.replace(path)
 
 
 def read_installed_state(path: Path) -> InstalledState:
