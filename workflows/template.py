@@ -13,6 +13,7 @@ from workflows.schema import (
     alternatives_of,
     choose,
     hints_of,
+    is_enumeration,
     is_required,
     is_tag,
     item_type,
@@ -117,7 +118,7 @@ def _defaults(record: type) -> dict[str, Any]:
 def _facts(hint: Any, default: Any, has_default: bool) -> str:
     unit = unit_of(hint)
     facts = [unit.symbol if unit else "", range_of(hint)]
-    if has_default:
+    if has_default and not is_enumeration(hint):
         facts.append(f"default {default}")
     return ", ".join(fact for fact in facts if fact)
 

@@ -39,7 +39,6 @@ def results(tmp_path_factory):
 def test_certificate_is_within_its_bounds(results):
     figures = json.loads((results / "certificate.json").read_text(encoding="utf-8"))
     assert not [name for name, figure in figures.items() if not figure["is_met"]]
-    assert figures["out_of_balance_geostatic"]["value"] < 1e-10
     volume = np.pi * (5.0**2 * 6.0 - 0.5**2 * 2.1)
     assert figures["volume_fe"]["value"] == pytest.approx(volume, rel=0.01)
     assert figures["volume_mpm"]["value"] == pytest.approx(volume, rel=0.01)
