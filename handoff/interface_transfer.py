@@ -13,7 +13,7 @@ from scipy.interpolate import PchipInterpolator
 
 from handoff.geostatic import geostatic_traction
 from install_mpm.conventions import Kinematics
-from install_mpm.ground import Ground
+from install_mpm.ground import GroundProfile
 from install_mpm.interface import InterfacePoints
 from install_mpm.pile import WHOLE_PILE, PilePart, surface_normals, tangent_of
 
@@ -22,7 +22,7 @@ COORDINATE = {PilePart.BASE: 0, PilePart.SHAFT: 1}
 
 
 def transferred_traction(
-    ground: Ground,
+    ground: GroundProfile,
     points: InterfacePoints,
     targets: np.ndarray,
     target_areas: np.ndarray,

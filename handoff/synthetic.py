@@ -20,7 +20,7 @@ import numpy as np
 from handoff.geostatic import VERTICAL
 from handoff.state_transfer import StateMap, mapped
 from install_mpm.conventions import Kinematics
-from install_mpm.ground import Ground, geostatic_stress, undrained_shear_strength
+from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
 from install_mpm.pile import Pile
 
 STRENGTHS = 4.0
@@ -28,7 +28,7 @@ STRENGTHS = 4.0
 
 
 def airy_stress(
-    ground: Ground,
+    ground: GroundProfile,
     pile: Pile,
     tip_depth: float,
     positions: np.ndarray,
@@ -36,7 +36,8 @@ def airy_stress(
 ) -> np.ndarray:
     """Return the self-equilibrated part (n, 3, 3) in Pa of the synthetic field at (n, 2)."""
     strength = undrained_shear_strength(ground, np.array([-tip_depth]))[0]
-    amplitude = STRENGTHS * strength if strength > 0.0 else ground.unit_weight * tip_depth
+    overburden = -geostatic_stress(ground, np.array([-tip_depth]), VERTICAL)[0, VERTICAL, VERTICAL]
+    amplitude = STRENGTHS * strength if strength > 0.0 else overburden
     stress = np.zeros((len(positions), 3, 3))
     below = (positions[:, 1] + tip_depth) / pile.half_width
     for side in (-1.0, 1.0):
@@ -54,7 +55,7 @@ def airy_stress(
 
 
 def synthetic_errors(
-    ground: Ground,
+    ground: GroundProfile,
     pile: Pile,
     tip_depth: float,
     state_map: StateMap,
@@ -68,14 +69,9 @@ def synthetic_errors(
     Both are errors over the norm of the Airy part alone, because the geostatic part, though far
     larger, is mapped exactly.  Near is within one pile width of the pile.
     """
-
-    def field(positions: np.ndarray) -> np.ndarray:
-        geostatic = geostatic_stress(ground, positions[:, VERTICAL], VERTICAL)
-        return geostatic + airy_stress(ground, pile, tip_depth, positions, kinematics)
-
-    geostatic = geostatic_stress(ground, targets[:, VERTICAL], VERTICAL)
-    error = mapped(state_map, field(point_positions), geostatic) - field(targets)
+    at_points = airy_stress(ground, pile, tip_depth, point_positions, kinematics)
     reference = airy_stress(ground, pile, tip_depth, targets, kinematics)
+    error = mapped(state_map, at_points, np.zeros_like(reference)) - reference
     is_near = distance_to_pile(pile, tip_depth, targets) <= pile.width
     return (
         relative_norm(error, reference, volumes),

@@ -12,7 +12,7 @@ from install_mpm.background_mesh import cell_quality
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.equilibrium import Prescribed
-from install_mpm.ground import Ground
+from install_mpm.ground import GroundProfile, boundary_depths
 from install_mpm.history import append
 from install_mpm.installation_setup import (
     DEFAULT_DISCRETISATION,
@@ -65,7 +65,7 @@ Observer = Callable[[InstalledState, InstallationProgress], None]
 
 
 def install(
-    ground: Ground,
+    ground: GroundProfile,
     pile: Pile,
     law: CoulombInterface,
     box: Box,
@@ -93,7 +93,9 @@ def install(
         is not in equilibrium.
     """
     if resume_from is None:
-        mesh = generate_background_mesh(pile, box, mesh_options, cell_type_of(discretisation))
+        mesh = generate_background_mesh(
+            pile, box, mesh_options, boundary_depths(ground), cell_type_of(discretisation)
+        )
     else:
         mesh, kinematics = resume_from.background_mesh, resume_from.kinematics
     problem = set_up(

@@ -15,7 +15,8 @@ from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme
-from install_mpm.ground import Ground
+from install_mpm.geostatic import geostatic_gradient
+from install_mpm.ground import GroundProfile, boundary_depths, soils_of
 from install_mpm.history import empty_history
 from install_mpm.interface import InterfacePoints
 from install_mpm.linear_solvers import SOLVERS
@@ -28,7 +29,7 @@ from install_mpm.options import (
     Numerics,
 )
 from install_mpm.pile import Pile
-from install_mpm.seeding import geostatic_gradient, seed_points
+from install_mpm.seeding import seed_points
 from install_mpm.state_file import InstalledState, PileState, StepControl
 
 ON_BOUNDARY = 1e-9
@@ -41,7 +42,7 @@ DEFAULT_DISCRETISATION = DiscretisationOptions()
 class Installation(NamedTuple):
     """The problem: everything that does not change while the pile goes down."""
 
-    ground: Ground
+    ground: GroundProfile
     pile: Pile
     law: CoulombInterface
     box: Box
@@ -58,7 +59,7 @@ class Installation(NamedTuple):
 
 
 def set_up(
-    ground: Ground,
+    ground: GroundProfile,
     pile: Pile,
     law: CoulombInterface,
     box: Box,
@@ -77,7 +78,7 @@ def set_up(
     model = Discretisation(
         cell=reference_cell(cell_type_of(discretisation)),
         elements=elements,
-        materials=dispatch.pack([ground.soil]),
+        materials=dispatch.pack(soils_of(ground)),
         pattern=pattern,
         solve=SOLVERS[numerics.linear_solver](pattern),
         numerics=numerics,
@@ -105,7 +106,11 @@ def set_up_at(
     kinematics, discretisation = problem.model.kinematics, problem.discretisation
     pile = replace(problem.pile, embedment=tip_depth)
     mesh = generate_background_mesh(
-        pile, problem.box, problem.mesh_options, cell_type_of(discretisation)
+        pile,
+        problem.box,
+        problem.mesh_options,
+        boundary_depths(problem.ground),
+        cell_type_of(discretisation),
     )
     renewed = set_up(
         problem.ground, problem.pile, problem.law, problem.box, problem.mesh_options,

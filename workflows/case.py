@@ -11,7 +11,7 @@ from typing import Any
 from handoff.options import HandoffOptions
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
-from install_mpm.ground import Ground
+from install_mpm.ground import GroundProfile
 from install_mpm.options import (
     BackgroundMeshOptions,
     Box,
@@ -38,7 +38,7 @@ class Case:
     """What the results are called; a results directory belongs to one title."""
     kinematics: Kinematics = field(default=Kinematics.PLANE_STRAIN, kw_only=True)
     """A wall in plane strain, per metre run, or a round pile in axisymmetry."""
-    ground: Ground
+    ground: GroundProfile
     pile: Pile
     interface: CoulombInterface
     box: Box

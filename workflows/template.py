@@ -128,6 +128,8 @@ def _section_comment(hint: Any, doc: str) -> list[str]:
     alternatives = alternatives_of(hint)
     if len(alternatives) == 1:
         return _wrapped(doc or _first_paragraph(alternatives[0]))
+    if not any(map(is_tag, hints_of(alternatives[0]).values())):
+        return _wrapped(doc or _first_paragraph(alternatives[0])) + _instead(alternatives[1:])
     lines = [*_wrapped(doc), f"One of the following, told apart by {tag_of(alternatives[0])}:"]
     for alternative in alternatives:
         keys = ", ".join(
@@ -139,6 +141,17 @@ def _section_comment(hint: Any, doc: str) -> list[str]:
         text = text.replace("``", "")
         lines += textwrap.wrap(text, WIDTH - 4, initial_indent="  ", subsequent_indent="    ")
     return lines
+
+
+def _instead(alternatives: tuple[Any, ...]) -> list[str]:
+    """Return the lines that tell of the other ways to write a table."""
+    return [
+        line
+        for alternative in alternatives
+        for line in _wrapped(
+            f"Or: {_first_paragraph(alternative)} Keys: {', '.join(hints_of(alternative))}."
+        )
+    ]
 
 
 def _first_paragraph(record: type) -> str:
