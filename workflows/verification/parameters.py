@@ -13,6 +13,7 @@ from install_mpm.conventions import Unit
 from workflows.errors import CaseError
 from workflows.quantities import parse_quantity
 from workflows.verification.problem import Problem
+from workflows.verification.ranges import check_value
 
 WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
 
@@ -94,6 +95,14 @@ def read_value(parameter: Parameter, text: str) -> Any:
     CaseError
         If it does not suit the parameter.
     """
+    value = _typed(parameter, text)
+    symbol = parameter.unit.symbol if parameter.unit else ""
+    check_value(parameter.name, symbol, parameter.default, value)
+    return value
+
+
+def _typed(parameter: Parameter, text: str) -> Any:
+    """Return ``text`` in the type of the parameter."""
     kind = parameter.kind
     if kind is bool:
         return _choose(text, WORDS)

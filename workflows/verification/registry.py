@@ -31,6 +31,7 @@ MODULES: tuple[str, ...] = (
     "interface_shear",
     "paper_penetration",
     "rigid_disc",
+    "scheme_comparison",
     "shaft_friction",
     "sliding_block",
     "strip_footing_fe",
