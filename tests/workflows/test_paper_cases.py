@@ -88,9 +88,9 @@ def test_missing_file_is_refused(monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("name", "quicker", "pictures"),
     [
-        ("fig3", {}, {"fig3.png", "fig3_states.png"}),
-        ("fig6", {"penetration": 0.1, "h": 1.0}, {"fig6.png", "fig6_states.png"}),
-        ("fig6_default", {"penetration": 0.1, "h": 1.0}, {"fig6_default_states.png",
+        ("fig3", {}, {"fig3.png", "fig3-states.png"}),
+        ("fig6", {"penetration": 0.1, "h": 1.0}, {"fig6.png", "fig6-states.png"}),
+        ("fig6_default", {"penetration": 0.1, "h": 1.0}, {"fig6_default-states.png",
                                                           "fig6_default.png"}),
     ],
 )  # fmt: skip

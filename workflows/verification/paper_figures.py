@@ -36,7 +36,7 @@ def write_pictures(name: str, result: Verified, directory: Path) -> list[Path]:
     directory.mkdir(parents=True, exist_ok=True)
     figures = {name: draw(result.outcome.series)} if result.outcome.series else {}
     with styled():
-        figures |= {f"{name}_{one.name}": one.draw() for one in result.outcome.pictures}
+        figures |= {f"{name}-{one.name}": one.draw() for one in result.outcome.pictures}
         files = {directory / f"{file}.png": figure for file, figure in figures.items()}
         for path, figure in files.items():
             path.write_bytes(png_of(figure))
