@@ -53,6 +53,21 @@ def _check_discretisation(case: Case) -> None:
             "discretisation.cell_weighted scales points that are integration points; set "
             'discretisation.scheme = "quadrature", or leave it out'
         )
+    is_round = case.kinematics == Kinematics.AXISYMMETRIC
+    if options.scheme == "carriers":
+        if is_round and options.cells == "tri3":
+            raise CaseError(
+                'discretisation.cells is "tri3": its one integration point does not integrate the '
+                'hoop stress of a ring exactly; use "tri6", or the scheme "quadrature"'
+            )
+        return
+    least = 1 + (options.cells == "tri6") + is_round
+    if case.background_mesh.points_per_direction < least:
+        raise CaseError(
+            f"background_mesh.points_per_direction is "
+            f"{case.background_mesh.points_per_direction}, too few for points that are integration "
+            f"points of such cells; make it at least {least}"
+        )
 
 
 def _check_ground(case: Case) -> None:
