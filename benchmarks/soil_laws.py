@@ -22,7 +22,8 @@ from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
 from install_mpm.geostatic import undisturbed_state
 from install_mpm.ground import Ground, soils_of
 from workflows.schema import build
-from workflows.soil_template import TYPICAL, soil_example
+from workflows.soil_template import soil_example
+from workflows.soil_typical import TYPICAL
 
 POINTS = 200_000
 ELASTIC, PLASTIC = 1e-9, 3e-3
