@@ -52,8 +52,10 @@ class InstallationProgress(NamedTuple):
     """What an observer is told after each accepted step."""
 
     load_step: int
-    penetration: float
+    travel: float
+    """What the target is measured by: the penetration, or the way of a screw pile's rim."""
     target: float
+    penetration: float
     crowd_force: float
     iterations: int
     cuts: int
@@ -281,8 +283,9 @@ def _progress(problem: Installation, state: InstalledState) -> InstallationProgr
     history = state.history
     return InstallationProgress(
         load_step=len(history.penetration) - 1,
-        penetration=float(state.pile.penetration),
+        travel=float(state.pile.penetration),
         target=problem.programme.penetration,
+        penetration=float(state.pile.penetration),
         crowd_force=float(history.crowd_force[-1]),
         iterations=int(history.iterations[-1]),
         cuts=int(history.cuts[-1]),

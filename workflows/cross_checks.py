@@ -11,6 +11,7 @@ from workflows.errors import CaseError
 
 if TYPE_CHECKING:
     from workflows.case import Case
+    from workflows.screw_case import ScrewCase
 
 LARGEST_STEP = 0.5
 """Largest step over the smallest cell: the pile must not pass more than half a cell at once."""
@@ -70,7 +71,14 @@ def _check_discretisation(case: Case) -> None:
         )
 
 
-def check_ground(case: Case) -> None:
+def check_ground(case: Case | ScrewCase) -> None:
+    """Check that the ground bears its own stress, and that adhesion has a strength to go by.
+
+    Raises
+    ------
+    CaseError
+        Naming the layer, its depth and the remedy.
+    """
     from install_mpm.geostatic import first_beyond_strength
     from install_mpm.ground import strata
     from install_mpm.soil_strength import has_undrained_shear_strength
@@ -181,7 +189,14 @@ def _check_programmes(case: Case) -> None:
             )
 
 
-def check_solver(case: Case) -> None:
+def check_solver(case: Case | ScrewCase) -> None:
+    """Check that the linear solver is known.
+
+    Raises
+    ------
+    CaseError
+        If it is not.
+    """
     from install_mpm.linear_solvers import SOLVERS
 
     if case.numerics.linear_solver not in SOLVERS:
