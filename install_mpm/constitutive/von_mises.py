@@ -28,7 +28,7 @@ from install_mpm.constitutive.remoulding import (
 )
 
 STATE_VARIABLES = ("undrained_shear_strength", "plastic_shear_strain")
-"""Undisturbed strength of the material in Pa; accumulated plastic shear strain sqrt(2) |d eps_p|."""
+"""Undisturbed strength in Pa; accumulated plastic shear strain sqrt(2) |d eps_p|."""
 
 STRENGTH, PLASTIC_SHEAR = 0, 1
 
