@@ -61,8 +61,10 @@ def _returned(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return stress (n, 6), elastic strain (n, 6) and state variables on the yield surface."""
     material = state.material[outside]
-    trial = six_vectors(elastic_strain_of(ground, material, state.cauchy_stress[outside]))
     variables = state.state_variables[outside]
+    trial = six_vectors(
+        elastic_strain_of(ground, material, state.cauchy_stress[outside], variables)
+    )
     count, status = len(outside), np.zeros(len(outside), dtype=np.int64)
     stress, strain, new_variables = np.empty((count, 6)), np.empty((count, 6)), variables.copy()
     tangent = np.empty((count, 6, 6))

@@ -27,10 +27,11 @@ def geostatic_state(
     height = integration_positions[:, VERTICAL]
     stress = geostatic_stress(ground, height, VERTICAL)
     material = np.zeros(len(height), dtype=np.int64)
+    state = dispatch.initial_state(ground.soil, np.maximum(-height, 0.0), stress)
     return FEState(
         cauchy_stress=stress,
-        elastic_strain=elastic_strain_of(ground, material, stress),
-        state_variables=dispatch.initial_state(ground.soil, np.maximum(-height, 0.0)),
+        elastic_strain=elastic_strain_of(ground, material, stress, state),
+        state_variables=state,
         material=material,
         interface_traction=geostatic_traction(ground, interface_positions, interface_normals),
         pile_displacement=np.zeros(2),
@@ -45,10 +46,19 @@ def geostatic_traction(ground: Ground, positions: np.ndarray, normals: np.ndarra
     return np.column_stack([np.einsum("ni,ni->n", traction, axis) for axis in (tangents, normals)])
 
 
-def elastic_strain_of(ground: Ground, material: np.ndarray, stress: np.ndarray) -> np.ndarray:
-    """Return the small elastic strain (n, 3, 3) that carries the Cauchy ``stress`` (n, 3, 3)."""
+def elastic_strain_of(
+    ground: Ground, material: np.ndarray, stress: np.ndarray, state: np.ndarray
+) -> np.ndarray:
+    """Return the small elastic strain (n, 3, 3) that carries the Cauchy ``stress`` (n, 3, 3).
+
+    ``state`` (n, n_state) holds the state variables.
+    """
     strain = np.empty((len(stress), 6))
     dispatch.elastic_strain_from_stress_all(
-        dispatch.pack([ground.soil]), material, six_vectors(stress), strain
+        dispatch.pack([ground.soil]),
+        material,
+        six_vectors(stress),
+        np.ascontiguousarray(state),
+        strain,
     )
     return tensors_of(strain)

@@ -78,11 +78,12 @@ def transfer_state(
     stress = mapped(state_map, cauchy_stress(points), geostatic.cauchy_stress)
     variables = mapped(state_map, points.state_variables, geostatic.state_variables)
     floor = np.where((points.state_variables >= 0.0).all(axis=0), 0.0, -np.inf)
+    variables = np.maximum(variables, floor)
     material = points.material[state_map.weights.nearest]
     return FEState(
         cauchy_stress=stress,
-        elastic_strain=elastic_strain_of(ground, material, stress),
-        state_variables=np.maximum(variables, floor),
+        elastic_strain=elastic_strain_of(ground, material, stress, variables),
+        state_variables=variables,
         material=material,
         interface_traction=transferred_traction(
             ground,

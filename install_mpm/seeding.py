@@ -42,27 +42,33 @@ def seed_points(
         volume *= 2.0 * np.pi * position[:, 0]
     n_points = len(position)
     stress = geostatic_stress(ground, position[:, -1], cell.dim - 1)
+    state = dispatch.initial_state(ground.soil, -position[:, -1], stress)
     return MaterialPoints(
         position=position,
         displacement=np.zeros_like(position),
         mass=volume * ground.unit_weight / GRAVITY,
         volume=volume,
         volume_ratio=np.ones(n_points),
-        elastic_log_strain=elastic_strain_of(ground.soil, stress),
+        elastic_log_strain=elastic_strain_of(ground.soil, stress, state),
         kirchhoff_stress=stress,
-        state_variables=dispatch.initial_state(ground.soil, -position[:, -1]),
+        state_variables=state,
         material=np.zeros(n_points, dtype=np.int64),
         cell=np.repeat(cells, len(shares)),
         reference_coordinates=np.tile(coordinates, (len(cells), 1)),
     )
 
 
-def elastic_strain_of(soil: SoilParameters, stress: np.ndarray) -> np.ndarray:
-    """Return the elastic strain (n, 3, 3) of ``soil`` under ``stress`` (n, 3, 3) in Pa."""
+def elastic_strain_of(soil: SoilParameters, stress: np.ndarray, state: np.ndarray) -> np.ndarray:
+    """Return the elastic strain (n, 3, 3) of ``soil`` of ``state`` (n, n_state) under ``stress``.
+
+    ``stress`` is (n, 3, 3) in Pa.
+    """
     material = np.zeros(len(stress), dtype=np.int64)
     strain = np.empty((len(stress), 6))
     six_vectors = np.ascontiguousarray(stress[:, ROW, COLUMN] * SCALE)
-    dispatch.elastic_strain_from_stress_all(dispatch.pack([soil]), material, six_vectors, strain)
+    dispatch.elastic_strain_from_stress_all(
+        dispatch.pack([soil]), material, six_vectors, state, strain
+    )
     tensor = np.empty_like(stress)
     tensor[:, ROW, COLUMN] = tensor[:, COLUMN, ROW] = strain / SCALE
     return tensor
@@ -71,4 +77,6 @@ def elastic_strain_of(soil: SoilParameters, stress: np.ndarray) -> np.ndarray:
 def geostatic_gradient(ground: Ground, vertical: int) -> GeostaticGradient:
     """Return geostatic stress and strain per metre of height; both are linear in the ground."""
     per_metre = -geostatic_stress(ground, np.array([-1.0]), vertical)
-    return GeostaticGradient(strain=elastic_strain_of(ground.soil, per_metre), stress=per_metre)
+    state = dispatch.initial_state(ground.soil, np.ones(1), -per_metre)
+    strain = elastic_strain_of(ground.soil, per_metre, state)
+    return GeostaticGradient(strain=strain, stress=per_metre)

@@ -41,7 +41,10 @@ def build(record: Any, table: object, key: str = "") -> Any:
     values = {
         name: _value(hints[name], table[name], f"{key}.{name}" if key else name) for name in table
     }
-    return chosen(**values)
+    try:
+        return chosen(**values)
+    except ValueError as error:  # a contradiction between values, told by the dataclass itself
+        raise CaseError(f"{key}: {error}" if key else str(error)) from error
 
 
 def choose(record: Any, table: Mapping[str, Any], key: str) -> type:

@@ -183,12 +183,13 @@ class Column:
         shares = np.column_stack([1.0 - coordinates.sum(axis=1), coordinates])
         position = np.einsum("pv,pvi->pi", shares, corners)
         stress = geostatic_stress(self.ground, position[:, 1], 1)
+        state = dispatch.initial_state(self.ground.soil, -position[:, 1], stress)
         return points._replace(
             position=position,
             reference_coordinates=coordinates,
             kirchhoff_stress=stress,
-            elastic_log_strain=elastic_strain_of(self.ground.soil, stress),
-            state_variables=dispatch.initial_state(self.ground.soil, -position[:, 1]),
+            elastic_log_strain=elastic_strain_of(self.ground.soil, stress, state),
+            state_variables=state,
         )
 
     def step(

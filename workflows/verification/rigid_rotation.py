@@ -102,7 +102,8 @@ def with_stress(body: Body, soil: HenckyElastic, components: tuple[float, float,
     stress = np.array([[xx, xy, 0.0], [xy, yy, 0.0], [0.0, 0.0, zz]])
     stresses = np.repeat(stress[None], len(body.points.mass), axis=0)
     points = body.points._replace(
-        kirchhoff_stress=stresses, elastic_log_strain=elastic_strain_of(soil, stresses)
+        kirchhoff_stress=stresses,
+        elastic_log_strain=elastic_strain_of(soil, stresses, body.points.state_variables),
     )
     return body._replace(points=points)
 

@@ -99,6 +99,7 @@ def _filled_cells(
     n_points = n_cells * n_per_cell
     stress = np.zeros((n_points, 3, 3))
     stress[:, 1, 1] = vertical_stress
+    no_state = np.zeros((n_points, 0))
     points = IntegrationPoints(
         cell_start=np.arange(n_cells + 1) * n_per_cell,
         reference_coordinates=np.tile(model.cell.integration_coordinates, (n_cells, 1)),
@@ -107,8 +108,8 @@ def _filled_cells(
         volume=geometry.integration_volume.ravel(),
         density=np.full(n_points, unit_weight / GRAVITY),
         volume_ratio=np.ones(n_points),
-        elastic_log_strain=elastic_strain_of(soil, stress),
-        state_variables=np.zeros((n_points, 0)),
+        elastic_log_strain=elastic_strain_of(soil, stress, no_state),
+        state_variables=no_state,
         material=np.zeros(n_points, dtype=np.int64),
     )
     everywhere = np.ones(n_cells, dtype=bool)
