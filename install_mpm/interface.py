@@ -79,7 +79,13 @@ def no_interface(dim: int) -> tuple[InterfaceElements, InterfacePoints]:
     elements = InterfaceElements(no_nodes, no_index, *facet_rule(3, 3))
     vectors = np.zeros((0, dim))
     points = InterfacePoints(
-        vectors, vectors, np.zeros(0), vectors, np.zeros((0, coulomb_interface.N_PARAMETERS)), no_index, np.zeros(0)
+        vectors,
+        vectors,
+        np.zeros(0),
+        vectors,
+        np.zeros((0, coulomb_interface.N_PARAMETERS)),
+        no_index,
+        np.zeros(0),
     )
     return elements, points
 

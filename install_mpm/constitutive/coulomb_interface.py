@@ -15,7 +15,8 @@ less.  What is left up to the limit is the contact pressure N = T - t_n >= 0, an
 m falling to zero with N: an open interface carries no shear.  N follows from the pressure x of the
 normal spring.  Exactly, N = max(x, 0); with a smoothing stress d it is
 
-    N = 0 for x <= -d ,  (x + d)^2 / (4 d) between ,  x for x >= d ;   m = 1 - (1 - N / d)^2 for N < d
+    N = 0 for x <= -d ,  (x + d)^2 / (4 d) between ,  x for x >= d ,
+    m = 1 - (1 - N / d)^2 for N < d ,  1 for N >= d ,
 
 so that the law is the exact one wherever N >= d.  The smoothing acts on the spring and not on a
 step: from the stored N the spring starts at x = 2 sqrt(d N) - d, and a step without motion changes

@@ -155,9 +155,12 @@ class CoulombInterface:
     friction_angle: Annotated[float, Unit("rad"), Ge(0), Lt(1.5)] = 0.0
     dilation_angle: Annotated[float, Unit("rad"), Ge(0), Lt(1.5)] = 0.0
     smoothing_stress: Annotated[float, Unit("Pa"), Ge(0)] = 0.0
-    """Contact pressure below which opening is smooth; zero for the exact return to the apex."""
+    """Contact pressure below which opening is smooth; zero for the exact return to the apex.
+
+    It has to be positive where ``tensile_strength`` limits the tension.
+    """
     tensile_strength: Annotated[float | None, Unit("Pa"), Ge(0)] = None
     """Largest tension; zero for an interface that opens without any.
 
-    Where it cuts off adhesion, the strength falls to zero over the ``smoothing_stress``.
+    As it opens, what it cuts off from the strength falls to zero over the ``smoothing_stress``.
     """

@@ -19,7 +19,8 @@ from install_mpm.discretisation import Scheme
 from install_mpm.material_points import MaterialPoints
 from workflows.environment import prepare
 from workflows.report_style import MUTED, grid, panels, png_of, styled
-from workflows.verification.paper_penetration import elastic_law, friction_law, friction_problem
+from workflows.verification.paper_friction import friction_law, friction_problem
+from workflows.verification.paper_penetration import elastic_law
 from workflows.verification.penetration import Penetration, PenetrationResult, penetrate
 
 DIRECTORY = Path("docs/images/paper")

@@ -1,7 +1,5 @@
 """FIG6, FIG8: the paper's pile penetrates elastic soil, without slip and with interfaces.
 
-FIG6-FRICTION adds the elasto-plastic interface, which the paper shows on two blocks only (Fig. 9).
-
 The paper gives pictures only.  Reactions are compared with those of a prototype (see
 ``references.prototype``).  The soil is elastic, so with any parameters the energy that it stores is
 at most the work of the pile; what is missing the scheme has lost.
@@ -37,20 +35,10 @@ from workflows.verification.references import prototype
 Pascal = Annotated[float, Unit("Pa")]
 Stiffness = Annotated[float, Unit("Pa/m")]
 Metre = Annotated[float, Unit("m")]
-Radian = Annotated[float, Unit("rad")]
-
-FRICTION_ANGLE = float(np.deg2rad(24.0))
-"""Of the interface in the paper's Fig. 9, in rad."""
 
 NO_EXTERNAL_REFERENCE = (
     "The paper prints no numbers for this figure. The reference is a throw-away prototype, "
     "written independently; it is no external reference."
-)
-
-NO_REFERENCE_WITH_FRICTION = (
-    "The paper shows no such run; two meshes are compared with each other. With Hencky's solid the "
-    "step ends where soil beside the tip corner has been stretched beyond ln(stretch) = 1 and has "
-    "lost ellipticity, whatever the interface law."
 )
 
 TO_PROTOTYPE = 0.01
@@ -71,12 +59,14 @@ def fig6(
     histories: list[tuple[float, ...]] = []
     remarks = [NO_EXTERNAL_REFERENCE]
     for is_side_fixed, side in ((False, "roller side"), (True, "fixed side")):
-        problem = Penetration(E, nu, size=h, steps=_steps(penetration), is_side_fixed=is_side_fixed)
+        problem = Penetration(
+            E, nu, size=h, steps=steps_of(penetration), is_side_fixed=is_side_fixed
+        )
         result = penetrate(problem)
         table = prototype.NO_SLIP.get((h, is_side_fixed), {}) if nu == 0.0 else {}
         checks += _to_prototype(side, result, _scaled(table, E), TO_PROTOTYPE)
         checks.append(_energy(side, result, problem))
-        series.append(_curve(side, result, _scaled(table, E)))
+        series.append(reaction_curve(side, result, _scaled(table, E)))
         remarks.append(_dissipated(side, result, problem))
         histories += result.residuals
     return Outcome(tuple(checks), tuple(series), tuple(remarks), tuple(histories))
@@ -90,14 +80,14 @@ def fig6_default(
     penetration: Metre = 4.0,
 ) -> Outcome:
     """Return the no-slip pile with the discretisation of the installation stage."""
-    problem = Penetration(E, nu, size=h, steps=_steps(penetration), scheme=Scheme.CARRIERS)
+    problem = Penetration(E, nu, size=h, steps=steps_of(penetration), scheme=Scheme.CARRIERS)
     result = penetrate(problem)
     checks = (
         at_most("steps that were cut", result.cuts, 0),
         _energy("roller side", result, problem),
     )
     remarks = (_dissipated("roller side", result, problem),)
-    return Outcome(checks, (_curve("roller side", result, {}),), remarks, result.residuals)
+    return Outcome(checks, (reaction_curve("roller side", result, {}),), remarks, result.residuals)
 
 
 def fig8(
@@ -117,7 +107,7 @@ def fig8(
     remarks = [NO_EXTERNAL_REFERENCE]
     has_table = (nu, kn, h, E) == (0.0, 1e8, 0.5, prototype.YOUNGS_MODULUS)
     for ks, name in ((ks_large, "large k_s"), (ks_small, "small k_s")):
-        problem = Penetration(E, nu, size=h, steps=_steps(penetration), law=elastic_law(kn, ks))
+        problem = Penetration(E, nu, size=h, steps=steps_of(penetration), law=elastic_law(kn, ks))
         result = penetrate(problem)
         table = prototype.ELASTIC_INTERFACE.get(ks, {}) if has_table else {}
         compared = _to_prototype(name, result, table, TO_PROTOTYPE)
@@ -131,7 +121,7 @@ def fig8(
             if ks == ks_small
             else _dragged(levels, result)
         )
-        series.append(_curve(name, result, table))
+        series.append(reaction_curve(name, result, table))
         histories += result.residuals
     return Outcome(tuple(checks), tuple(series), tuple(remarks), tuple(histories))
 
@@ -141,69 +131,13 @@ def _miss(check: Check) -> str:
     return f"not claimed within {check.tolerance:.0%}: {check.quantity}, {check.error:+.1%}"
 
 
-def fig6_friction(
-    *,
-    E: Pascal = 10e3,
-    nu: float = 0.0,
-    kn: Stiffness = 1e8,
-    ks: Stiffness = 1e7,
-    c: Pascal = 0.1,
-    phi: Radian = FRICTION_ANGLE,
-    h_coarse: Metre = 0.5,
-    h_fine: Metre = 1.0 / 3.0,
-    penetration: Metre = 4.0,
-) -> Outcome:
-    """Return the pile with the elasto-plastic interface of Fig. 9, on two meshes.
-
-    The soil is neo-Hookean: Hencky's loses ellipticity beside the tip corner before 4 m.
-    """
-    law = friction_law(kn, ks, c, phi)
-    checks: list[Check] = []
-    series: list[Series] = []
-    results: list[PenetrationResult] = []
-    for h in (h_coarse, h_fine):
-        result = penetrate(friction_problem(law, E, nu, h, _steps(penetration)))
-        name = f"h = {h:.3g} m"
-        excess = _excess_of_strength(result, c, phi)
-        checks.append(at_most(f"({name}) steps that were cut", result.cuts, 0))
-        checks.append(at_most(f"({name}) shear beyond the strength, share", excess, 1e-9))
-        series.append(_curve(name, result, {}))
-        results.append(result)
-    coarse, fine = (float(result.reaction[-1]) for result in results)
-    checks.append(relative("reaction on the coarse mesh against the fine, N/m", coarse, fine, 0.02))
-    histories = results[0].residuals + results[1].residuals
-    return Outcome(tuple(checks), tuple(series), (NO_REFERENCE_WITH_FRICTION,), histories)
-
-
-def friction_problem(
-    law: CoulombInterface, E: float = 10e3, nu: float = 0.0, h: float = 0.5, steps: int = 40
-) -> Penetration:
-    """Return the pile with friction in neo-Hookean soil, default discretisation."""
-    return Penetration(
-        E, nu, size=h, steps=steps, law=law, scheme=Scheme.CARRIERS, is_neo_hookean=True
-    )
-
-
-def _excess_of_strength(result: PenetrationResult, cohesion: float, friction: float) -> float:
-    """Return by how much |t_s| exceeds c - t_n tan(phi), over the largest strength; 0 if never."""
-    shear, normal = result.body.interface.traction.T
-    strength = cohesion - normal * np.tan(friction)
-    return float(max((np.abs(shear) - strength).max() / strength.max(), 0.0))
-
-
 def elastic_law(kn: float, ks: float) -> CoulombInterface:
     """Return an interface that neither slips nor opens."""
     return CoulombInterface(kn, ks, cohesion=1e12)
 
 
-def friction_law(
-    kn: float = 1e8, ks: float = 1e7, c: float = 0.1, phi: float = FRICTION_ANGLE
-) -> CoulombInterface:
-    """Return the elasto-plastic interface, by default with the strength of the paper's Fig. 9."""
-    return CoulombInterface(kn, ks, cohesion=c, friction_angle=phi)
-
-
-def _steps(penetration: float) -> int:
+def steps_of(penetration: float) -> int:
+    """Return the number of steps of the paper in a penetration in m."""
     return round(penetration / Penetration.step)
 
 
@@ -261,7 +195,7 @@ def _dragged(levels: np.ndarray, result: PenetrationResult) -> Check:
     )
 
 
-def _curve(name: str, result: PenetrationResult, table: dict[int, float]) -> Series:
+def reaction_curve(name: str, result: PenetrationResult, table: dict[int, float]) -> Series:
     """Return the reaction; the reference is the table, between its steps linear."""
     steps = result.penetration / Penetration.step
     reference: tuple[float, ...] = ()
@@ -283,12 +217,6 @@ PROBLEMS = (
         "FIG6-DEFAULT",
         "Pile without slip, carriers and quadratic cells",
         fig6_default,
-        is_quick=False,
-    ),
-    Problem(
-        "FIG6-FRICTION",
-        "Pile with friction in neo-Hookean soil, two meshes",
-        fig6_friction,
         is_quick=False,
     ),
     Problem("FIG8", "Pile with elastic interfaces (paper, Fig. 8)", fig8, is_quick=False),

@@ -29,6 +29,7 @@ MODULES: tuple[str, ...] = (
     "deep_cylinder",
     "flexible_load",
     "interface_shear",
+    "paper_friction",
     "paper_penetration",
     "rigid_disc",
     "shaft_friction",

@@ -1,0 +1,247 @@
+"""FIG6-FRICTION, FIG6-HENCKY: the elasto-plastic interface on the pile of the paper's Fig. 6.
+
+The paper shows this interface on two blocks only (Fig. 9), and no such run.  With neo-Hookean soil
+the pile goes the whole way on two meshes, and the smoothing of the opening (see
+``coulomb_interface``) is shown to vanish.  With Hencky's solid no interface law goes the whole way:
+the soil beside the tip corner loses ellipticity, with or without smoothing, with or without a
+switch between sticking, slipping and opening.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.conventions import Unit
+from install_mpm.discretisation import Scheme
+from workflows.verification.body import Body
+from workflows.verification.ellipticity import is_elliptic
+from workflows.verification.paper_penetration import elastic_law, reaction_curve, steps_of
+from workflows.verification.penetration import Penetration, PenetrationResult, penetrate
+from workflows.verification.problem import Check, Outcome, Problem, at_least, at_most, relative
+
+Pascal = Annotated[float, Unit("Pa")]
+Stiffness = Annotated[float, Unit("Pa/m")]
+Metre = Annotated[float, Unit("m")]
+Radian = Annotated[float, Unit("rad")]
+
+FRICTION_ANGLE = float(np.deg2rad(24.0))
+"""Of the interface in the paper's Fig. 9, in rad."""
+
+ONE_MESH_TO_ANOTHER = 0.02
+CUTS_BEFORE_THE_END = 3
+"""Halvings of a step before a run in Hencky soil counts as ended."""
+
+NO_REFERENCE_WITH_FRICTION = (
+    "The paper shows no such run; two meshes are compared with each other, and the smoothed with "
+    "the exact law."
+)
+
+
+def fig6_friction(
+    *,
+    E: Pascal = 10e3,
+    nu: float = 0.0,
+    kn: Stiffness = 1e8,
+    ks: Stiffness = 1e7,
+    c: Pascal = 0.1,
+    phi: Radian = FRICTION_ANGLE,
+    d: Pascal = 200.0,
+    h_coarse: Metre = 0.5,
+    h_fine: Metre = 0.25,
+    penetration: Metre = 4.0,
+) -> Outcome:
+    """Return the pile with the elasto-plastic interface of Fig. 9 in neo-Hookean soil.
+
+    On both meshes with the exact law and with the smoothing stresses d, d / 2 and d / 4.
+    """
+    checks: list[Check] = []
+    exact: list[PenetrationResult] = []
+    for h in (h_coarse, h_fine):
+        runs = [
+            penetrate(friction_problem(friction_law(kn, ks, c, phi, smoothing), E, nu, h,
+                                       steps_of(penetration)))
+            for smoothing in (0.0, d, d / 2.0, d / 4.0)
+        ]  # fmt: skip
+        checks += _of_one_mesh(f"h = {h:.3g} m", runs, c, phi)
+        exact.append(runs[0])
+    coarse, fine = (float(result.reaction[-1]) for result in exact)
+    text = "reaction on the coarse mesh against the fine, N/m"
+    checks.append(relative(text, coarse, fine, ONE_MESH_TO_ANOTHER))
+    return Outcome(
+        tuple(checks),
+        tuple(
+            reaction_curve(f"h = {h:.3g} m", result, {})
+            for h, result in zip((h_coarse, h_fine), exact, strict=True)
+        ),
+        (NO_REFERENCE_WITH_FRICTION,),
+        exact[0].residuals + exact[1].residuals,
+    )
+
+
+def _of_one_mesh(
+    name: str, runs: list[PenetrationResult], cohesion: float, friction_angle: float
+) -> list[Check]:
+    """Return the checks of the exact run and of those with d, d / 2 and d / 4."""
+    exact, *smoothed = runs
+    excess = _excess_of_strength(exact, cohesion, friction_angle)
+    changes = [_largest_change(run, exact) for run in smoothed]
+    return [
+        at_most(f"({name}) steps that were cut", max(run.cuts for run in runs), 0),
+        at_most(f"({name}) shear beyond the strength, share", excess, 1e-9),
+        at_most(f"({name}) change of the reaction by the smoothing d, share", changes[0], 0.02),
+        at_least(f"({name}) that change over the one by d / 2", changes[0] / changes[1], 1.5),
+        at_least(f"({name}) change by d / 2 over the one by d / 4", changes[1] / changes[2], 1.5),
+    ]
+
+
+def _largest_change(run: PenetrationResult, exact: PenetrationResult) -> float:
+    """Return the largest change of the reaction over the largest reaction, at common steps."""
+    depths = np.intersect1d(run.penetration.round(6), exact.penetration.round(6))
+    change = [abs(run.reaction_at(depth) - exact.reaction_at(depth)) for depth in depths]
+    return float(max(change) / np.abs(exact.reaction).max())
+
+
+def friction_problem(
+    law: CoulombInterface, E: float = 10e3, nu: float = 0.0, h: float = 0.5, steps: int = 40
+) -> Penetration:
+    """Return the pile with friction in neo-Hookean soil, default discretisation."""
+    return Penetration(
+        E, nu, size=h, steps=steps, law=law, scheme=Scheme.CARRIERS, is_neo_hookean=True
+    )
+
+
+def friction_law(
+    kn: float = 1e8,
+    ks: float = 1e7,
+    c: float = 0.1,
+    phi: float = FRICTION_ANGLE,
+    smoothing: float = 0.0,
+) -> CoulombInterface:
+    """Return the elasto-plastic interface, by default with the strength of the paper's Fig. 9."""
+    return CoulombInterface(kn, ks, cohesion=c, friction_angle=phi, smoothing_stress=smoothing)
+
+
+def _excess_of_strength(result: PenetrationResult, cohesion: float, friction: float) -> float:
+    """Return by how much |t_s| exceeds c - t_n tan(phi), over the largest strength; 0 if never."""
+    shear, normal = result.body.interface.traction.T
+    strength = cohesion - normal * np.tan(friction)
+    return float(max((np.abs(shear) - strength).max() / strength.max(), 0.0))
+
+
+def fig6_hencky(
+    *,
+    E: Pascal = 10e3,
+    nu: float = 0.0,
+    kn: Stiffness = 1e8,
+    ks: Stiffness = 1e7,
+    ks_small: Stiffness = 1e1,
+    c: Pascal = 0.1,
+    phi: Radian = FRICTION_ANGLE,
+    d: Pascal = 200.0,
+    h: Metre = 0.5,
+    penetration: Metre = 4.0,
+) -> Outcome:
+    """Return how far the pile gets in Hencky soil, and where the soil has lost ellipticity.
+
+    With the exact law, with the smoothed one, and with an elastic interface, which never switches.
+    Every run that ends early has to have lost ellipticity before, and none may cut a step as long
+    as all soil is elliptic.
+    """
+    laws = {
+        "exact friction": friction_law(kn, ks, c, phi),
+        "smoothed friction": friction_law(kn, ks, c, phi, d),
+        "elastic interface": elastic_law(kn, ks_small),
+    }
+    runs = {
+        name: _penetrate_hencky(Penetration(
+            E, nu, size=h, steps=steps_of(penetration), law=law, scheme=Scheme.CARRIERS,
+            max_cuts=CUTS_BEFORE_THE_END,
+        ))
+        for name, law in laws.items()
+    }  # fmt: skip
+    checks: list[Check] = []
+    for name, (result, loss) in runs.items():
+        reached = float(result.penetration[-1])
+        if result.failure:
+            text = f"({name}) penetration at loss of ellipticity over that at the end"
+            checks.append(at_most(text, loss.penetration / reached, 1.0))
+        checks.append(at_least(f"({name}) first cut step over loss of ellipticity, m",
+                               _first_cut(result), min(loss.penetration, reached)))  # fmt: skip
+    losses = [runs[name][1].penetration for name in ("exact friction", "smoothed friction")]
+    if np.isfinite(losses).all():
+        text = "penetration at loss of ellipticity, smoothed against exact friction, m"
+        checks.append(relative(text, losses[1], losses[0], 0.05))
+    return Outcome(
+        tuple(checks),
+        tuple(reaction_curve(name, result, {}) for name, (result, _) in runs.items()),
+        tuple(_in_words(name, *run) for name, run in runs.items()),
+        tuple(history for result, _ in runs.values() for history in result.residuals),
+    )
+
+
+class _Loss(NamedTuple):
+    """Where soil has lost ellipticity first."""
+
+    penetration: float
+    """In m; infinite if all soil is elliptic to the end."""
+    points: int
+    """How many material points."""
+    beside: tuple[float, float]
+    """Their mean place from the tip corner, away from the pile and upward, in m."""
+
+
+def _penetrate_hencky(problem: Penetration) -> tuple[PenetrationResult, _Loss]:
+    """Return the run as far as it goes, and the first loss of ellipticity."""
+    nu = problem.poissons_ratio
+    shear_modulus = problem.youngs_modulus / (2.0 * (1.0 + nu))
+    first_lame = 2.0 * shear_modulus * nu / (1.0 - 2.0 * nu)
+    losses: list[_Loss] = []
+
+    def look(penetration: float, body: Body) -> None:
+        is_lost = ~is_elliptic(body.points.elastic_log_strain, shear_modulus, first_lame)
+        if is_lost.any() and not losses:
+            corner = np.array([problem.half_width, -problem.embedment - penetration])
+            x, z = (body.points.position[is_lost] - corner).mean(axis=0)
+            losses.append(_Loss(penetration, int(is_lost.sum()), (float(x), float(z))))
+
+    result = penetrate(problem, may_stop=True, observe=look)
+    return result, losses[0] if losses else _Loss(np.inf, 0, (0.0, 0.0))
+
+
+def _first_cut(result: PenetrationResult) -> float:
+    """Return the penetration in m before the first step that is shorter than the full one."""
+    lengths = np.diff(result.penetration, prepend=0.0)
+    is_cut = lengths < 0.99 * Penetration.step
+    ends = result.penetration - lengths
+    return float(ends[is_cut][0] if is_cut.any() else result.penetration[-1])
+
+
+def _in_words(name: str, result: PenetrationResult, loss: _Loss) -> str:
+    """Return what became of a run in Hencky soil."""
+    reached = f"({name}) the last step that converges ends at {result.penetration[-1]:.4g} m"
+    if not loss.points:
+        return f"{reached}; all soil is elliptic there."
+    x, z = loss.beside
+    return (
+        f"{reached}; from {loss.penetration:.4g} m on soil is not elliptic, at first {loss.points} "
+        f"points {x:.2g} m beside and {z:.2g} m above the tip corner."
+    )
+
+
+PROBLEMS = (
+    Problem(
+        "FIG6-FRICTION",
+        "Pile with friction in neo-Hookean soil, two meshes",
+        fig6_friction,
+        is_quick=False,
+    ),
+    Problem(
+        "FIG6-HENCKY",
+        "Pile with friction in Hencky soil: loss of ellipticity",
+        fig6_hencky,
+        is_quick=False,
+    ),
+)
