@@ -89,6 +89,12 @@ def state_variable_names(soil: SoilParameters) -> tuple[str, ...]:
     return names
 
 
+def is_linear_elastic(soil: SoilParameters) -> bool:
+    """Return whether stress is linear in the elastic strain, so that geostatic strain is too."""
+    module = MODULE_OF[MODEL_OF[type(soil)]]
+    return module.elastic_strain_from_stress is elastic.elastic_strain_from_stress
+
+
 def initial_state(soil: SoilParameters, depth: np.ndarray, stress: np.ndarray) -> np.ndarray:
     """Return the state variables (n, n_state) of undisturbed soil.
 

@@ -8,11 +8,12 @@ from install_mpm.cell_fill import cell_geometry, fill_cells
 from install_mpm.cells import CellType, reference_cell, sub_region_points
 from install_mpm.constitutive import dispatch
 from install_mpm.conventions import GRAVITY, Kinematics
+from install_mpm.geostatic import elastic_strain_of, geostatic_gradient
 from install_mpm.ground import geostatic_stress
 from install_mpm.injection import inject
 from install_mpm.kernels.carry import body_force
 from install_mpm.material_points import MaterialPoints
-from install_mpm.seeding import elastic_strain_of, geostatic_gradient, seed_points
+from install_mpm.seeding import seed_points
 
 CELL = reference_cell(CellType.TRI6)
 THRESHOLD = 0.3

@@ -7,6 +7,7 @@ from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic, VonMises
 from install_mpm.conventions import GRAVITY, Kinematics, dimension, vertical_axis
+from install_mpm.geostatic import elastic_strain_of, geostatic_gradient
 from install_mpm.ground import Ground, geostatic_stress, undrained_shear_strength
 from install_mpm.interface import global_traction, reaction
 from install_mpm.mesh_generation import generate_background_mesh
@@ -27,7 +28,7 @@ from install_mpm.pile_surface import (
     pile_elements,
     place_points,
 )
-from install_mpm.seeding import elastic_strain_of, geostatic_gradient, seed_points
+from install_mpm.seeding import seed_points
 
 LAW = CoulombInterface(2e8, 2e7, cohesion=1e3, adhesion_factor=0.5)
 

@@ -8,13 +8,13 @@ from install_mpm.assembly import sparsity_pattern
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic, VonMises
 from install_mpm.equilibrium import Prescribed
+from install_mpm.geostatic import elastic_strain_of
 from install_mpm.ground import Ground, geostatic_stress
 from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule
 from install_mpm.material_points import cauchy_stress
 from install_mpm.mesh_motion import translate
 from install_mpm.options import Numerics
 from install_mpm.pile import PileMotion
-from install_mpm.seeding import elastic_strain_of
 
 GROUNDS = {
     "clay": Ground(18e3, 0.8, VonMises(4e6, 0.49, 20e3)),

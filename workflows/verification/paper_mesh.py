@@ -7,9 +7,9 @@ import numpy as np
 from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
 from install_mpm.constitutive import dispatch
 from install_mpm.conventions import GRAVITY
+from install_mpm.geostatic import elastic_strain_of
 from install_mpm.ground import Ground
 from install_mpm.material_points import MaterialPoints
-from install_mpm.seeding import elastic_strain_of
 
 FOUR_POINTS = np.array([[1 / 3, 1 / 3], [0.2, 0.2], [0.6, 0.2], [0.2, 0.6]])
 """Reference coordinates of the four points of a triangle; each stands for a quarter of it."""

@@ -15,11 +15,11 @@ import numpy as np
 from install_mpm.constitutive.parameters import HenckyElastic
 from install_mpm.conventions import Unit
 from install_mpm.equilibrium import Prescribed
+from install_mpm.geostatic import elastic_strain_of
 from install_mpm.ground import Ground
 from install_mpm.material_points import cauchy_stress
 from install_mpm.mesh_motion import rotate, rotate_clockwise
 from install_mpm.options import Numerics
-from install_mpm.seeding import elastic_strain_of
 from install_mpm.step import StepResult
 from workflows.verification.body import Body, advance, make_body
 from workflows.verification.disc_meshes import circle, disc_mesh, nodes_on

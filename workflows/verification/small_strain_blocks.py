@@ -19,12 +19,12 @@ from install_mpm.constitutive.parameters import HenckyElastic
 from install_mpm.conventions import GRAVITY
 from install_mpm.discretisation import Discretisation
 from install_mpm.equilibrium import Prescribed, StepEquilibrium, find_equilibrium
+from install_mpm.geostatic import elastic_strain_of
 from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule
 from install_mpm.linear_solvers import mumps
 from install_mpm.options import Numerics
 from install_mpm.pile import PileMotion
-from install_mpm.seeding import elastic_strain_of
 
 AT_REST = PileMotion(np.zeros(2))
 
