@@ -72,6 +72,12 @@ def test_first_steps_with_friction():
     assert all(check.is_met for check in checks.values())
 
 
+def test_first_steps_in_hencky_soil_are_elliptic():
+    outcome = fig6_hencky(penetration=0.2, h=1.0)
+    assert_all_met(outcome)
+    assert all("all soil is elliptic" in remark for remark in outcome.remarks)
+
+
 def test_the_two_discretisations_agree_while_cells_are_little_deformed():
     default = penetrate(Penetration(steps=3, scheme=Scheme.CARRIERS)).reaction
     paper = penetrate(Penetration(steps=3)).reaction

@@ -31,6 +31,9 @@ FRICTION_ANGLE = float(np.deg2rad(24.0))
 """Of the interface in the paper's Fig. 9, in rad."""
 
 ONE_MESH_TO_ANOTHER = 0.02
+STEPS_HALVED = 5
+"""Steps made with the halved smoothing stresses; in longer runs points that are split or merged at
+other steps hide the order."""
 CUTS_BEFORE_THE_END = 3
 """Halvings of a step before a run in Hencky soil counts as ended."""
 
@@ -55,16 +58,19 @@ def fig6_friction(
 ) -> Outcome:
     """Return the pile with the elasto-plastic interface of Fig. 9 in neo-Hookean soil.
 
-    On both meshes with the exact law and with the smoothing stresses d, d / 2 and d / 4.
+    On both meshes with the exact law and with the smoothing stress d; the first steps also with
+    d / 2 and d / 4.
     """
     checks: list[Check] = []
     exact: list[PenetrationResult] = []
     for h in (h_coarse, h_fine):
+        laws = [friction_law(kn, ks, c, phi, smoothing) for smoothing in (0.0, d, d / 2.0, d / 4.0)]
+        steps = steps_of(penetration)
+        counts = (steps, steps, *2 * (min(steps, STEPS_HALVED),))
         runs = [
-            penetrate(friction_problem(friction_law(kn, ks, c, phi, smoothing), E, nu, h,
-                                       steps_of(penetration)))
-            for smoothing in (0.0, d, d / 2.0, d / 4.0)
-        ]  # fmt: skip
+            penetrate(friction_problem(law, E, nu, h, count))
+            for law, count in zip(laws, counts, strict=True)
+        ]
         checks += _of_one_mesh(f"h = {h:.3g} m", runs, c, phi)
         exact.append(runs[0])
     coarse, fine = (float(result.reaction[-1]) for result in exact)
@@ -87,21 +93,23 @@ def _of_one_mesh(
     """Return the checks of the exact run and of those with d, d / 2 and d / 4."""
     exact, *smoothed = runs
     excess = _excess_of_strength(exact, cohesion, friction_angle)
-    changes = [_largest_change(run, exact) for run in smoothed]
+    first, second, third = (_changes(run, exact)[:STEPS_HALVED].max() for run in smoothed)
+    largest = _changes(smoothed[0], exact).max()
     return [
         at_most(f"({name}) steps that were cut", max(run.cuts for run in runs), 0),
         at_most(f"({name}) shear beyond the strength, share", excess, 1e-9),
-        at_most(f"({name}) change of the reaction by the smoothing d, share", changes[0], 0.02),
-        at_least(f"({name}) that change over the one by d / 2", changes[0] / changes[1], 1.5),
-        at_least(f"({name}) change by d / 2 over the one by d / 4", changes[1] / changes[2], 1.5),
+        at_most(f"({name}) change of the reaction by the smoothing d, share", largest, 0.005),
+        at_least(f"({name}) change by d over that by d / 2, first steps", first / second, 1.5),
+        at_least(f"({name}) change by d / 2 over that by d / 4", second / third, 1.5),
     ]
 
 
-def _largest_change(run: PenetrationResult, exact: PenetrationResult) -> float:
-    """Return the largest change of the reaction over the largest reaction, at common steps."""
-    depths = np.intersect1d(run.penetration.round(6), exact.penetration.round(6))
-    change = [abs(run.reaction_at(depth) - exact.reaction_at(depth)) for depth in depths]
-    return float(max(change) / np.abs(exact.reaction).max())
+def _changes(run: PenetrationResult, exact: PenetrationResult) -> np.ndarray:
+    """Return the change of the reaction over its largest value, (n,) at the full steps of both."""
+    ends = Penetration.step * np.arange(1, 1 + round(run.penetration[-1] / Penetration.step))
+    change = np.array([run.reaction_at(end) - exact.reaction_at(end) for end in ends])
+    largest: np.ndarray = np.abs(change) / np.abs(exact.reaction).max()
+    return largest
 
 
 def friction_problem(
