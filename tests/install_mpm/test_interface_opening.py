@@ -167,6 +167,22 @@ def test_bonded_clay_does_not_know_the_smoothing(dim, rng):
     np.testing.assert_array_equal(plain.tangent, smooth.tangent)
 
 
+@pytest.mark.parametrize("advance_ratio", [1.0, 0.5])
+@pytest.mark.parametrize("law", ["friction", "adhesion without tension"])
+def test_a_screwed_shaft_has_one_slip_direction(law, advance_ratio):
+    """T = 2 pi a^2 L tau cos(b) and F = 2 pi a L tau sin(b) with tan(b) = p AR / (2 pi a)."""
+    radius, pitch, pressure = 0.44, 0.56, 30e3
+    angle = np.arctan(pitch * advance_ratio / (2.0 * np.pi * radius))
+    assert np.sin(angle) == pytest.approx({1.0: 0.19853, 0.5: 0.10076}[advance_ratio], rel=1e-4)
+    slip = 2e-3 * np.array([[np.cos(angle), np.sin(angle), 0.0]])
+    traction = np.array([[0.0, 2e3, -pressure]])  # jacked before it is turned
+    for _ in range(100):
+        traction = evaluate(SMOOTH[law], slip, traction).traction
+    strength = C + pressure * np.tan(LAWS[law].friction_angle)
+    expected = [strength * np.cos(angle), strength * np.sin(angle), -pressure]
+    np.testing.assert_allclose(traction[0], expected, rtol=1e-6)
+
+
 def test_shear_remembers_its_traction_while_it_sticks():
     """A cycle within the strength is elastic; beyond it dissipates 4 tau_y (u_a - tau_y / k_s)."""
     law, pressure, amplitude, n = SMOOTH["without cohesion"], 10e3, 5e-3, 400
