@@ -173,7 +173,7 @@ class _StepSystem:
         self.element_stiffness = np.zeros((n_elements, n_element_nodes, dim, n_element_nodes, dim))
         self.external = np.zeros((n_nodes, dim))
         self.out_of_balance = np.zeros((n_nodes, dim))
-        body_force(model.cell.cell_type, mesh.cell_nodes, points, GRAVITY, self.external)
+        body_force(mesh.cell_nodes, points, GRAVITY, self.external)
         if prescribed.force is not None:
             self.external += prescribed.force
         is_held = np.zeros(n_nodes, dtype=bool)

@@ -10,10 +10,11 @@ import pytest
 
 from install_mpm.discretisation import Scheme
 from install_mpm.newton import convergence_order
-from workflows.verification.paper_friction import fig6_friction, fig6_hencky
+from workflows.verification.paper_friction import fig6_hencky, fig6_smoothing
 from workflows.verification.paper_penetration import (
     fig6,
     fig6_default,
+    fig6_friction,
     fig8,
 )
 from workflows.verification.penetration import Penetration, penetrate, work_and_energy
@@ -85,7 +86,9 @@ def test_the_two_discretisations_agree_while_cells_are_little_deformed():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("run", [fig6, fig6_default, fig8, fig6_friction, fig6_hencky])
+@pytest.mark.parametrize(
+    "run", [fig6, fig6_default, fig8, fig6_friction, fig6_hencky, fig6_smoothing]
+)
 def test_four_metres(run):
     assert_all_met(run())
 

@@ -1,4 +1,4 @@
-"""FIG6-FRICTION, FIG6-HENCKY: the elasto-plastic interface on the pile of the paper's Fig. 6.
+"""FIG6-SMOOTHING, FIG6-HENCKY: the elasto-plastic interface on the pile of the paper's Fig. 6.
 
 The paper shows this interface on two blocks only (Fig. 9), and no such run.  With neo-Hookean soil
 the pile goes the whole way on two meshes, and the smoothing of the opening (see
@@ -9,6 +9,7 @@ switch between sticking, slipping and opening.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -18,7 +19,12 @@ from install_mpm.conventions import Unit
 from install_mpm.discretisation import Scheme
 from workflows.verification.body import Body
 from workflows.verification.ellipticity import is_elliptic
-from workflows.verification.paper_penetration import elastic_law, reaction_curve, steps_of
+from workflows.verification.paper_penetration import (
+    FRICTION_ANGLE,
+    elastic_law,
+    friction_law,
+)
+from workflows.verification.paper_penetration_checks import excess_of_strength, reaction_curve
 from workflows.verification.penetration import Penetration, PenetrationResult, penetrate
 from workflows.verification.problem import Check, Outcome, Problem, at_least, at_most, relative
 
@@ -26,9 +32,6 @@ Pascal = Annotated[float, Unit("Pa")]
 Stiffness = Annotated[float, Unit("Pa/m")]
 Metre = Annotated[float, Unit("m")]
 Radian = Annotated[float, Unit("rad")]
-
-FRICTION_ANGLE = float(np.deg2rad(24.0))
-"""Of the interface in the paper's Fig. 9, in rad."""
 
 ONE_MESH_TO_ANOTHER = 0.02
 STEPS_HALVED = 5
@@ -43,7 +46,7 @@ NO_REFERENCE_WITH_FRICTION = (
 )
 
 
-def fig6_friction(
+def fig6_smoothing(
     *,
     E: Pascal = 10e3,
     nu: float = 0.0,
@@ -64,8 +67,11 @@ def fig6_friction(
     checks: list[Check] = []
     exact: list[PenetrationResult] = []
     for h in (h_coarse, h_fine):
-        laws = [friction_law(kn, ks, c, phi, smoothing) for smoothing in (0.0, d, d / 2.0, d / 4.0)]
-        steps = steps_of(penetration)
+        laws = [
+            _smooth(friction_law(kn, ks, c, phi), smoothing)
+            for smoothing in (0.0, d, d / 2.0, d / 4.0)
+        ]
+        steps = round(penetration / Penetration.step)
         counts = (steps, steps, *2 * (min(steps, STEPS_HALVED),))
         runs = [
             penetrate(friction_problem(law, E, nu, h, count))
@@ -92,7 +98,7 @@ def _of_one_mesh(
 ) -> list[Check]:
     """Return the checks of the exact run and of those with d, d / 2 and d / 4."""
     exact, *smoothed = runs
-    excess = _excess_of_strength(exact, cohesion, friction_angle)
+    excess = excess_of_strength(exact, cohesion, friction_angle)
     first, second, third = (_changes(run, exact)[:STEPS_HALVED].max() for run in smoothed)
     largest = _changes(smoothed[0], exact).max()
     return [
@@ -113,7 +119,7 @@ def _changes(run: PenetrationResult, exact: PenetrationResult) -> np.ndarray:
 
 
 def friction_problem(
-    law: CoulombInterface, E: float = 10e3, nu: float = 0.0, h: float = 0.5, steps: int = 40
+    law: CoulombInterface, E: float, nu: float, h: float, steps: int
 ) -> Penetration:
     """Return the pile with friction in neo-Hookean soil, default discretisation."""
     return Penetration(
@@ -121,22 +127,9 @@ def friction_problem(
     )
 
 
-def friction_law(
-    kn: float = 1e8,
-    ks: float = 1e7,
-    c: float = 0.1,
-    phi: float = FRICTION_ANGLE,
-    smoothing: float = 0.0,
-) -> CoulombInterface:
-    """Return the elasto-plastic interface, by default with the strength of the paper's Fig. 9."""
-    return CoulombInterface(kn, ks, cohesion=c, friction_angle=phi, smoothing_stress=smoothing)
-
-
-def _excess_of_strength(result: PenetrationResult, cohesion: float, friction: float) -> float:
-    """Return by how much |t_s| exceeds c - t_n tan(phi), over the largest strength; 0 if never."""
-    shear, normal = result.body.interface.traction.T
-    strength = cohesion - normal * np.tan(friction)
-    return float(max((np.abs(shear) - strength).max() / strength.max(), 0.0))
+def _smooth(law: CoulombInterface, smoothing: float) -> CoulombInterface:
+    """Return the law with this smoothing stress in Pa."""
+    return replace(law, smoothing_stress=smoothing)
 
 
 def fig6_hencky(
@@ -160,12 +153,12 @@ def fig6_hencky(
     """
     laws = {
         "exact friction": friction_law(kn, ks, c, phi),
-        "smoothed friction": friction_law(kn, ks, c, phi, d),
+        "smoothed friction": _smooth(friction_law(kn, ks, c, phi), d),
         "elastic interface": elastic_law(kn, ks_small),
     }
     runs = {
         name: _penetrate_hencky(Penetration(
-            E, nu, size=h, steps=steps_of(penetration), law=law, scheme=Scheme.CARRIERS,
+            E, nu, size=h, steps=round(penetration / Penetration.step), law=law, scheme=Scheme.CARRIERS,
             max_cuts=CUTS_BEFORE_THE_END,
         ))
         for name, law in laws.items()
@@ -184,7 +177,7 @@ def fig6_hencky(
         checks.append(relative(text, losses[1], losses[0], 0.05))
     return Outcome(
         tuple(checks),
-        tuple(reaction_curve(name, result, {}) for name, (result, _) in runs.items()),
+        tuple(_curve(name, result, {}) for name, (result, _) in runs.items()),
         tuple(_in_words(name, *run) for name, run in runs.items()),
         tuple(history for result, _ in runs.values() for history in result.residuals),
     )
@@ -241,9 +234,9 @@ def _in_words(name: str, result: PenetrationResult, loss: _Loss) -> str:
 
 PROBLEMS = (
     Problem(
-        "FIG6-FRICTION",
-        "Pile with friction in neo-Hookean soil, two meshes",
-        fig6_friction,
+        "FIG6-SMOOTHING",
+        "Pile with friction: the smooth opening vanishes with its stress",
+        fig6_smoothing,
         is_quick=False,
     ),
     Problem(
