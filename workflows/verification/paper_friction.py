@@ -158,7 +158,8 @@ def fig6_hencky(
     }
     runs = {
         name: _penetrate_hencky(Penetration(
-            E, nu, size=h, steps=round(penetration / Penetration.step), law=law, scheme=Scheme.CARRIERS,
+            E, nu, size=h, steps=round(penetration / Penetration.step), law=law,
+            scheme=Scheme.CARRIERS,
             max_cuts=CUTS_BEFORE_THE_END,
         ))
         for name, law in laws.items()
@@ -177,7 +178,7 @@ def fig6_hencky(
         checks.append(relative(text, losses[1], losses[0], 0.05))
     return Outcome(
         tuple(checks),
-        tuple(_curve(name, result, {}) for name, (result, _) in runs.items()),
+        tuple(reaction_curve(name, result, {}) for name, (result, _) in runs.items()),
         tuple(_in_words(name, *run) for name, run in runs.items()),
         tuple(history for result, _ in runs.values() for history in result.residuals),
     )
