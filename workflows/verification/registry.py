@@ -30,7 +30,6 @@ MODULES: tuple[str, ...] = (
     "deep_cylinder",
     "flexible_load",
     "interface_shear",
-    "paper_friction",
     "paper_penetration",
     "rigid_disc",
     "scheme_comparison",
