@@ -36,6 +36,7 @@ def check(case: Case) -> None:
     _check_headroom(case)
     _check_step(case)
     _check_programmes(case)
+    check_interface(case)
     check_solver(case)
 
 
@@ -158,6 +159,23 @@ def _check_step(case: Case) -> None:
             f"installation.step {step:g} m is larger than half the smallest cell "
             f"(background_mesh.size_at_pile {size:g} m); "
             f"make it {LARGEST_STEP * size:g} m or smaller"
+        )
+
+
+def check_interface(case: Case | ScrewCase) -> None:
+    """Check that the interface has what its tensile strength needs.
+
+    Raises
+    ------
+    CaseError
+        If it lacks the smoothing.
+    """
+    law = case.interface
+    if law.tensile_strength is not None and law.smoothing_stress == 0.0:
+        raise CaseError(
+            f"interface.tensile_strength {law.tensile_strength:g} Pa needs an "
+            "interface.smoothing_stress, over which adhesion falls to zero as the interface opens; "
+            'set it, e.g. to "100 Pa"'
         )
 
 

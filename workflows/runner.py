@@ -97,10 +97,6 @@ SCREW_STAGES = (
         reads=(), writes=(names.INSTALLED,),
         sources=("install_mpm", "workflows/stages/install.py"),
     ),
-    Stage(
-        "report", "screwpile report DIR", "write the report", ("title", *names.INSTALL_KEYS),
-        reads=(names.INSTALLED,), writes=(names.REPORT,), sources=("workflows",),
-    ),
 )  # fmt: skip
 """Stages of a screw pile."""
 
