@@ -31,6 +31,7 @@ MODULES: tuple[str, ...] = (
     "interface_shear",
     "paper_penetration",
     "rigid_disc",
+    "sand_cavity",
     "shaft_friction",
     "sliding_block",
     "soil_elements",
