@@ -60,7 +60,7 @@ def choose(record: Any, table: Mapping[str, Any], key: str) -> type:
         names = ", ".join(f'"{name}"' for name in known)
         raise CaseError(f"{key}.{tag} is missing; set it to one of {names}")
     if table[tag] not in known:
-        raise CaseError(f"{key}.{tag} is {table[tag]!r}; {_suggestion(str(table[tag]), known)}")
+        raise CaseError(f"{key}.{tag} is {table[tag]!r}; {suggestion(str(table[tag]), known)}")
     return known[table[tag]]
 
 
@@ -85,7 +85,7 @@ def _check_keys(record: type, table: Mapping[str, Any], key: str) -> None:
     names = {field.name: field for field in fields(record)}
     for name in table:
         if name not in names:
-            raise CaseError(f"{prefix}{name} is not a known key; {_suggestion(name, names)}")
+            raise CaseError(f"{prefix}{name} is not a known key; {suggestion(name, names)}")
     for name, field in names.items():
         if name not in table and is_required(field):
             hint = hints_of(record)[name]
@@ -103,7 +103,8 @@ def _example(name: str, hint: Any, key: str) -> str:
     return f'{name} = "text"' if hint is str else f"{name} = 1"
 
 
-def _suggestion(name: str, known: Mapping[str, object]) -> str:
+def suggestion(name: str, known: Mapping[str, object]) -> str:
+    """Return what to write in place of ``name``: the nearest of the ``known``, or all of them."""
     nearest = get_close_matches(name, known, n=1, cutoff=0.6)
     if nearest:
         return f'did you mean "{nearest[0]}"?'
