@@ -272,7 +272,7 @@ def _history_row(
     shaft = reaction(result.interface, ~on_base)[1]
     kinematics = problem.model.kinematics
     whole = WHOLE_PILE[kinematics]
-    weight = buried_weight(problem.pile, tip_depth, kinematics)
+    weight = buried_weight(problem.pile, tip_depth, kinematics, problem.ground.water_table)
     return {
         "penetration": penetration,
         "crowd_force": whole * (base + shaft - weight),

@@ -211,8 +211,8 @@ class CoulombInterface:
 
     The cohesion is ``cohesion + adhesion_factor * undrained_shear_strength`` of the adjacent
     ground; undrained clay has ``adhesion_factor`` alpha and no friction.  Without friction the
-    interface also carries tension (it is bonded in the normal direction); with friction the tension
-    ends at the apex c / tan(phi).
+    interface also carries tension (it is bonded in the normal direction), unless
+    ``tensile_strength`` limits it; with friction the tension ends at the apex c / tan(phi).
     """
 
     normal_stiffness: Annotated[float, Unit("Pa/m"), Gt(0)]
@@ -221,3 +221,13 @@ class CoulombInterface:
     adhesion_factor: Annotated[float, Ge(0)] = 0.0
     friction_angle: Annotated[float, Unit("rad"), Ge(0), Lt(1.5)] = 0.0
     dilation_angle: Annotated[float, Unit("rad"), Ge(0), Lt(1.5)] = 0.0
+    smoothing_stress: Annotated[float, Unit("Pa"), Ge(0)] = 0.0
+    """Contact pressure below which opening is smooth; zero for the exact return to the apex.
+
+    It has to be positive where ``tensile_strength`` limits the tension.
+    """
+    tensile_strength: Annotated[float | None, Unit("Pa"), Ge(0)] = None
+    """Largest tension; zero for an interface that opens without any.
+
+    As it opens, what it cuts off from the strength falls to zero over the ``smoothing_stress``.
+    """
