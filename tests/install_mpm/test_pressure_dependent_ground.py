@@ -1,4 +1,4 @@
-"""Undisturbed ground of pressure-dependent, undrained soil is in equilibrium, however points lie."""
+"""Ground of pressure-dependent, undrained soil is in equilibrium, however its points lie."""
 
 import numpy as np
 import pytest
