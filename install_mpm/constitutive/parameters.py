@@ -46,13 +46,16 @@ class VonMises:
     """Undrained clay: Hencky elastic, perfectly plastic at ``undrained_shear_strength``.
 
     The strength at the original depth d of the material is ``undrained_shear_strength + gradient *
-    d``; it travels with the material as a state variable.
+    d``; it travels with the material as a state variable.  Shearing takes it down to its value
+    over ``sensitivity``, 95 % of the way at the plastic shear strain ``remoulding_strain``.
     """
 
     youngs_modulus: Stiffness
     poissons_ratio: PoissonsRatio
     undrained_shear_strength: Annotated[float, Unit("Pa"), Gt(0)]
     undrained_shear_strength_gradient: Annotated[float, Unit("Pa/m"), Ge(0)] = 0.0
+    sensitivity: Annotated[float, Ge(1)] = 1.0
+    remoulding_strain: Annotated[float, Gt(0)] = 20.0
     model: Literal["von_mises"] = "von_mises"
 
 
@@ -68,6 +71,8 @@ class Tresca:
     poissons_ratio: PoissonsRatio
     undrained_shear_strength: Annotated[float, Unit("Pa"), Gt(0)]
     undrained_shear_strength_gradient: Annotated[float, Unit("Pa/m"), Ge(0)] = 0.0
+    sensitivity: Annotated[float, Ge(1)] = 1.0
+    remoulding_strain: Annotated[float, Gt(0)] = 20.0
     model: Literal["tresca"] = "tresca"
 
 
