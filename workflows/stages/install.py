@@ -48,6 +48,7 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
             write_installed_state(checkpoint, state, created_by())
 
     start = _read_checkpoint(directory, case)
+    start_measuring()
     if isinstance(case, ScrewCase):
         installed = _screw_in(case, start, observe)
     else:
