@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-_seconds: Counter[str] = Counter()
+_seconds: defaultdict[str, float] = defaultdict(float)
 
 
 @contextmanager
@@ -27,4 +27,4 @@ def start_measuring() -> None:
 
 def measured_seconds() -> dict[str, float]:
     """Return the seconds by phase since ``start_measuring``, longest first."""
-    return dict(_seconds.most_common())
+    return dict(sorted(_seconds.items(), key=lambda item: -item[1]))
