@@ -14,14 +14,15 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm import carriers, quadrature
-from install_mpm.background_mesh import FACETS_OPPOSITE, BackgroundMesh
+from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme, StepStart
 from install_mpm.equilibrium import Prescribed, StepEquilibrium, find_equilibrium
 from install_mpm.integration_points import CellFill
 from install_mpm.interface import InterfacePoints
-from install_mpm.kernels.locate import PROJECTED, locate_points
+from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import PileMotion
+from install_mpm.timing import measured
 
 SCHEMES = {Scheme.CARRIERS: carriers, Scheme.QUADRATURE: quadrature}
 
@@ -69,7 +70,8 @@ def step(
     no undo.
     """
     scheme = SCHEMES[model.scheme]
-    given = scheme.give_state(points, mesh, model, gradient)
+    with measured("transfer"):
+        given = scheme.give_state(points, mesh, model, gradient)
     interface = switch_on(interface, given.fill, model)
 
     equilibrium = find_equilibrium(
@@ -79,11 +81,13 @@ def step(
     if not equilibrium.newton.is_converged:
         return StepResult(False, equilibrium, points, interface, mesh, counts)
 
-    carried, is_sound = scheme.take_state(
-        given.points, mesh, given.fill, equilibrium, model, gradient
-    )
+    with measured("transfer"):
+        carried, is_sound = scheme.take_state(
+            given.points, mesh, given.fill, equilibrium, model, gradient
+        )
     moved_mesh = move_mesh(mesh)
-    n_projected = locate(carried, moved_mesh) if is_sound else 0
+    with measured("location"):
+        n_projected = locate(carried, moved_mesh) if is_sound else 0
     return StepResult(
         is_sound,
         equilibrium,
@@ -122,15 +126,3 @@ def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation)
     return interface._replace(
         covered=covered, traction=np.where(covered[:, None] > 0.0, interface.traction, 0.0)
     )
-
-
-def locate(points: MaterialPoints, mesh: BackgroundMesh) -> int:
-    """Find the cell of every point, in place; return how many were brought back into the mesh."""
-    status, before = np.zeros(len(points.cell), dtype=np.int64), points.position.copy()
-    locate_points(
-        mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours,
-        np.array(FACETS_OPPOSITE[mesh.nodes.shape[1] + 1]), points.position, points.cell,
-        points.reference_coordinates, status,
-    )  # fmt: skip
-    points.displacement[:] += points.position - before
-    return int(np.count_nonzero(status == PROJECTED))

@@ -6,7 +6,8 @@ Modules that take long to load are imported inside the commands, so that others 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,7 +16,7 @@ import typer
 from workflows.environment import prepare
 
 if TYPE_CHECKING:
-    from workflows.case import Case
+    from workflows.case import AnyCase
 
 NOT_MET = 1
 """Exit status after a reference problem that is not within its tolerance."""
@@ -67,7 +68,8 @@ def run(
     from workflows.runner import run_case
 
     loaded, directory = _load(case, output, overrides)
-    run_case(loaded, directory, resume=resume)
+    with _resumable(directory):
+        run_case(loaded, directory, resume=resume)
 
 
 @app.command()
@@ -78,7 +80,8 @@ def install(
     from workflows.runner import run_from_case
 
     loaded, directory = _load(case, output, overrides)
-    run_from_case("install", loaded, directory, resume=resume)
+    with _resumable(directory):
+        run_from_case("install", loaded, directory, resume=resume)
 
 
 @app.command()
@@ -135,8 +138,14 @@ def check(case: CaseFile, overrides: Overrides = None) -> None:
     """Validate a case and forecast its size and time."""
     from workflows.case import read_case
     from workflows.forecast import forecast, print_forecast
+    from workflows.screw_case import ScrewCase
 
     loaded, _ = read_case(case, overrides or ())
+    if isinstance(loaded, ScrewCase):
+        from workflows.screw_forecast import print_screw_forecast, screw_forecast
+
+        print_screw_forecast(loaded, screw_forecast(loaded))
+        return
     print_forecast(loaded, forecast(loaded))
 
 
@@ -190,7 +199,8 @@ def element_test(
 @app.command()
 def verify(
     problems: Annotated[
-        list[str] | None, typer.Argument(metavar="[ID]...", help="Problems; all if none is named.")
+        list[str] | None,
+        typer.Argument(metavar="[ID | CASE]...", help="Problems or case files; all if none."),
     ] = None,
     overrides: Annotated[
         list[str] | None,
@@ -226,11 +236,24 @@ def verify(
         raise typer.Exit(NOT_MET)
 
 
-def _load(path: Path, output: Path | None, overrides: list[str] | None) -> tuple[Case, Path]:
+def _load(path: Path, output: Path | None, overrides: list[str] | None) -> tuple[AnyCase, Path]:
     from workflows.case import read_case
 
     case, _ = read_case(path, overrides or ())
     return case, output or Path("out") / path.stem
+
+
+@contextmanager
+def _resumable(directory: Path) -> Iterator[None]:
+    """Say after Ctrl-C that the installation can go on, if it has left a checkpoint."""
+    from workflows.directory import CHECKPOINT
+
+    try:
+        yield
+    except KeyboardInterrupt:
+        if (directory / CHECKPOINT).exists():
+            print("screwpile: --resume continues the installation", file=sys.stderr)
+        raise
 
 
 def is_user_error(error: Exception) -> bool:
@@ -259,7 +282,7 @@ def run_as_command(command: typer.Typer) -> None:
         command()
     except SystemExit as end:  # typer turns Ctrl-C into this status
         if end.code == INTERRUPTED:
-            print("screwpile: stopped; --resume continues an installation", file=sys.stderr)
+            print("screwpile: stopped", file=sys.stderr)
         raise
     except Exception as error:
         if not is_user_error(error):

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from install_mpm.conventions import Kinematics
 from service_fe.options import Release
 from workflows.errors import CaseError
 
 if TYPE_CHECKING:
     from workflows.case import Case
+    from workflows.screw_case import ScrewCase
 
 LARGEST_STEP = 0.5
 """Largest step over the smallest cell: the pile must not pass more than half a cell at once."""
@@ -26,16 +28,58 @@ def check(case: Case) -> None:
     CaseError
         Naming the keys, their values and the remedy, at the first contradiction.
     """
-    _check_ground(case)
+    _check_kinematics(case)
+    _check_discretisation(case)
+    check_ground(case)
     _check_geometry(case)
     _check_mesh_sizes(case)
     _check_headroom(case)
     _check_step(case)
     _check_programmes(case)
-    _check_solver(case)
+    check_interface(case)
+    check_solver(case)
 
 
-def _check_ground(case: Case) -> None:
+def _check_kinematics(case: Case) -> None:
+    if case.kinematics == Kinematics.THREE_D:
+        raise CaseError(
+            'kinematics is "three_d", but the stages are two-dimensional; '
+            'use "plane_strain" or "axisymmetric"'
+        )
+
+
+def _check_discretisation(case: Case) -> None:
+    options = case.discretisation
+    if options.cell_weighted and options.scheme != "quadrature":
+        raise CaseError(
+            "discretisation.cell_weighted scales points that are integration points; set "
+            'discretisation.scheme = "quadrature", or leave it out'
+        )
+    is_round = case.kinematics == Kinematics.AXISYMMETRIC
+    if options.scheme == "carriers":
+        if is_round and options.cells == "tri3":
+            raise CaseError(
+                'discretisation.cells is "tri3": its one integration point does not integrate the '
+                'hoop stress of a ring exactly; use "tri6", or the scheme "quadrature"'
+            )
+        return
+    least = 1 + (options.cells == "tri6") + is_round
+    if case.background_mesh.points_per_direction < least:
+        raise CaseError(
+            f"background_mesh.points_per_direction is "
+            f"{case.background_mesh.points_per_direction}, too few for points that are integration "
+            f"points of such cells; make it at least {least}"
+        )
+
+
+def check_ground(case: Case | ScrewCase) -> None:
+    """Check that the ground bears its own stress, and that adhesion has a strength to go by.
+
+    Raises
+    ------
+    CaseError
+        Naming the layer, its depth and the remedy.
+    """
     from install_mpm.geostatic import first_beyond_strength
     from install_mpm.ground import strata
     from install_mpm.soil_strength import has_undrained_shear_strength
@@ -66,7 +110,7 @@ def _check_geometry(case: Case) -> None:
             f"pile.half_width {pile.half_width:g} m (with background_mesh.rigid_zone) does not fit "
             f"into box.width {box.width:g} m; make the box wider"
         )
-    margin = 2.0 * pile.half_width
+    margin = pile.width
     if case.final_tip_depth + margin > box.depth:
         raise CaseError(
             f"pile.embedment {pile.embedment:g} m and installation.penetration "
@@ -118,6 +162,23 @@ def _check_step(case: Case) -> None:
         )
 
 
+def check_interface(case: Case | ScrewCase) -> None:
+    """Check that the interface has what its tensile strength needs.
+
+    Raises
+    ------
+    CaseError
+        If it lacks the smoothing.
+    """
+    law = case.interface
+    if law.tensile_strength is not None and law.smoothing_stress == 0.0:
+        raise CaseError(
+            f"interface.tensile_strength {law.tensile_strength:g} Pa needs an "
+            "interface.smoothing_stress, over which adhesion falls to zero as the interface opens; "
+            'set it, e.g. to "100 Pa"'
+        )
+
+
 def _check_programmes(case: Case) -> None:
     programmes = case.service.programmes
     if not programmes:
@@ -146,7 +207,14 @@ def _check_programmes(case: Case) -> None:
             )
 
 
-def _check_solver(case: Case) -> None:
+def check_solver(case: Case | ScrewCase) -> None:
+    """Check that the linear solver is known.
+
+    Raises
+    ------
+    CaseError
+        If it is not.
+    """
     from install_mpm.linear_solvers import SOLVERS
 
     if case.numerics.linear_solver not in SOLVERS:

@@ -54,15 +54,13 @@ def forecast(case: Case) -> Forecast:
     from install_mpm.ground import boundary_depths
     from install_mpm.mesh_generation import generate_background_mesh
 
-    layers = boundary_depths(case.ground)
-    mesh = generate_background_mesh(case.pile, case.box, case.background_mesh, layers)
+    layers, cells = boundary_depths(case.ground), CellType[case.discretisation.cells.upper()]
+    mesh = generate_background_mesh(case.pile, case.box, case.background_mesh, layers, cells)
     fe_mesh = make_mesh(
         case.pile, case.final_tip_depth, case.box, case.handoff, level_surface(), layers
     )
     heights = mesh.nodes[mesh.cell_nodes[:, :3], 1].mean(axis=1)
-    _, shares = sub_region_points(
-        reference_cell(CellType.TRI6), case.background_mesh.points_per_direction
-    )
+    _, shares = sub_region_points(reference_cell(cells), case.background_mesh.points_per_direction)
     n_points = int((heights < 0.0).sum()) * len(shares)
     dim = dimension(case.kinematics)
     dofs, fe_dofs = dim * len(mesh.nodes), dim * len(fe_mesh.nodes)
@@ -105,10 +103,11 @@ def print_forecast(case: Case, sizes: Forecast, console: Console | None = None) 
     console = console or Console()
     console.print(table)
     console.print(
-        f"memory about {sizes.memory / 1e9:.1f} GB, time about {_duration(sizes.seconds)} "
+        f"memory about {sizes.memory / 1e9:.1f} GB, time about {duration(sizes.seconds)} "
         "on two cores (the first run also compiles, a minute or two)"
     )
 
 
-def _duration(seconds: float) -> str:
+def duration(seconds: float) -> str:
+    """Return a time in s as text, in minutes if it is long."""
     return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.1f} min"

@@ -1,0 +1,185 @@
+"""PC2: the work of the rig on a coarse screw pile is taken up by the interface and the soil (3D).
+
+In every step the torque on the rotation and the force on the advance must do the work that the
+interface tractions do on the slip and the stresses do on the soil, less that of the weight.  The
+work on the soil is split at the integration points into what is stored elastically and what is
+dissipated plastically; both come from the strains alone, so their sum is a second account of it.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from install_mpm import carriers
+from install_mpm.constitutive import dispatch
+from install_mpm.constitutive.elastic import BULK, SHEAR
+from install_mpm.constitutive.parameters import CoulombInterface, VonMises
+from install_mpm.conventions import Unit
+from install_mpm.ground import Ground
+from install_mpm.integration_points import IntegrationPoints
+from install_mpm.options import Box, Numerics, ScrewMeshOptions
+from install_mpm.screw_installation import accept, motion_to, step_to
+from install_mpm.screw_pile import Helix, ScrewPile
+from install_mpm.screw_pile_mesh import generate_screw_mesh
+from install_mpm.screw_programme import Phase, Pose, ScrewProgramme
+from install_mpm.screw_record import Work, work_of_step
+from install_mpm.screw_setup import ScrewInstallation, geostatic_state, set_up
+from install_mpm.state_file import InstalledState
+from install_mpm.step import StepResult
+from workflows.verification.body import ProblemNotSolvedError
+from workflows.verification.problem import Outcome, Problem, Series, absolute, at_most
+
+MODULUS_OVER_STRENGTH, POISSON, UNIT_WEIGHT = 200.0, 0.49, 8e3
+INTERFACE_STIFFNESS = 50.0
+"""Normal stiffness of the interface over Young's modulus per metre; the shear one is a tenth."""
+NUMERICS = Numerics(tolerance=1e-6)
+STEADY_FROM = 3
+"""Steps that are left out of the split: the soil is loaded up in them."""
+
+Length = Annotated[float, Unit("m")]
+
+
+class SoilWork(NamedTuple):
+    """What becomes of the work on the soil in a step, in J."""
+
+    stored: float
+    dissipated: float
+    least_dissipated: float
+    """Smallest share of an integration point."""
+
+
+def screw_pile_work(
+    *,
+    D: Length = 1.0,
+    d: Length = 0.5,
+    p: Length = 0.33,
+    t: Length = 0.12,
+    su: Annotated[float, Unit("Pa")] = 10e3,
+    alpha: float = 0.5,
+    AR: float = 1.0,
+    degrees_per_step: float = 2.0,
+    steps: int = 8,
+) -> Outcome:
+    """Return the power balance of a helix of diameter D on a shaft of diameter d in clay."""
+    problem, state = _problem(D, d, p, t, su, alpha)
+    works, splits, residuals = [], [], []
+    for number in range(steps + 1):  # the first step moves nothing
+        angle = np.radians(degrees_per_step) * number
+        pose = Pose(AR * p * angle / (2.0 * np.pi), -angle)
+        result = step_to(problem, state, pose, 1.0 if number else 0.0)
+        if not result.is_converged:
+            raise ProblemNotSolvedError(f"screw pile: step {number} does not converge")
+        works.append(work_of_step(state, result.equilibrium, motion_to(state, pose)))
+        splits.append(soil_work(problem, state, result))
+        residuals.append(tuple(result.equilibrium.newton.residuals))
+        state = accept(problem, state, result, pose, 0.5 * D * angle)
+    return _outcome(Work(*np.transpose(works[1:])), SoilWork(*np.transpose(splits[1:])), residuals)
+
+
+def _outcome(work: Work, split: SoilWork, residuals: list[tuple[float, ...]]) -> Outcome:
+    """Return the checks; the fields of ``work`` and ``split`` are arrays (n_steps,)."""
+    rig = np.asarray(work.rig)
+    balance = work.interface + work.soil - work.weight - rig
+    steady = slice(STEADY_FROM, None)
+    total = rig[steady].sum()
+    taken = (work.interface + split.stored + split.dissipated - work.weight)[steady].sum()
+    number = tuple(map(float, range(1, len(rig) + 1)))
+    return Outcome(
+        (
+            at_most("largest error of the balance in a step over the work of the rig",
+                    np.abs(balance / rig).max(), 0.02),
+            absolute("work taken up by interface, elastic store, dissipation and weight, over that"
+                     " of the rig", taken / total, 1.0, 0.02),
+            at_most("smallest dissipation at a point over the work of the rig, below zero",
+                    max(-np.min(split.least_dissipated / rig), 0.0), 1e-9),
+        ),
+        (
+            Series("Dissipation in the soil", "step", "share of the work of the rig", number,
+                   tuple(split.dissipated / rig)),
+        ),
+        (
+            f"of the work of the rig after step {STEADY_FROM}:"
+            f" {np.sum(work.interface[steady]) / total:.1%} in the interface,"
+            f" {np.sum(split.dissipated[steady]) / total:.1%} dissipated in the soil,"
+            f" {np.sum(split.stored[steady]) / total:.1%} stored,"
+            f" {-np.sum(work.weight[steady]) / total:.1%} against the weight",
+        ),
+        tuple(residuals),
+    )  # fmt: skip
+
+
+def _problem(
+    diameter: float, shaft: float, pitch: float, thickness: float, strength: float, alpha: float
+) -> tuple[ScrewInstallation, InstalledState]:
+    """Return the problem and its start; box and cells scale with the diameter."""
+    helix = Helix(diameter, pitch, thickness, height=0.25 * diameter)
+    pile = ScrewPile(shaft, 1.2 * diameter, (helix,), UNIT_WEIGHT)
+    box = Box(2.75 * diameter, 3.0 * diameter, 0.5 * diameter)
+    sizes = ScrewMeshOptions(
+        *(diameter * np.array([0.25, 0.45, 0.4, 1.2, 0.05])), points_per_direction=1
+    )
+    modulus = MODULUS_OVER_STRENGTH * strength
+    soil, stiffness = VonMises(modulus, POISSON, strength), INTERFACE_STIFFNESS * modulus
+    law = CoulombInterface(stiffness, 0.1 * stiffness, adhesion_factor=alpha)
+    programme = ScrewProgramme((Phase("in", 1.0, 1.0),), 0.02 * diameter)
+    mesh = generate_screw_mesh(pile, box, sizes)
+    problem = set_up(Ground(UNIT_WEIGHT, 1.0, soil), pile, law, box, programme, NUMERICS, mesh)
+    return problem, geostatic_state(problem, mesh, sizes, "")
+
+
+def soil_work(problem: ScrewInstallation, state: InstalledState, result: StepResult) -> SoilWork:
+    """Return stored and dissipated work of a step from the strains at the integration points.
+
+    With the Kirchhoff stress tau at the end of the step, the plastic part of a Hencky law in
+    principal axes dissipates tau : (trial strain - elastic strain), per unit of initial volume.
+    """
+    model = problem.model
+    given = carriers.give_state(
+        state.material_points, state.background_mesh, model, problem.gradient
+    )
+    start, trial = given.quadrature, result.equilibrium.trial
+    parameters = dispatch.pack([problem.ground.layers[0].soil]).parameters[0]
+    volume = start.volume / start.volume_ratio
+    change = _energy(trial.elastic_log_strain, parameters) - _energy(
+        start.elastic_log_strain, parameters
+    )
+    ratio = np.repeat(trial.cell_volume_ratio, np.diff(start.cell_start))
+    deformation = _deformation(start, state, result, ratio)
+    plastic = _trial_strain(deformation, start.elastic_log_strain) - trial.elastic_log_strain
+    dissipated = start.volume * ratio * np.einsum("pij,pij->p", trial.cauchy_stress, plastic)
+    return SoilWork(float((volume * change).sum()), float(dissipated.sum()), dissipated.min())
+
+
+def _energy(strain: np.ndarray, parameters: np.ndarray) -> np.ndarray:
+    """Return the elastic energy (n,) per initial volume of Hencky ``strain`` (n, 3, 3)."""
+    trace = np.trace(strain, axis1=1, axis2=2)
+    squares = np.einsum("pij,pij->p", strain, strain) - trace**2 / 3.0
+    energy: np.ndarray = parameters[BULK] / 2.0 * trace**2 + parameters[SHEAR] * squares
+    return energy
+
+
+def _deformation(
+    start: IntegrationPoints, state: InstalledState, result: StepResult, ratio: np.ndarray
+) -> np.ndarray:
+    """Return the deformation (n, 3, 3) of a step, with the volume change ``ratio`` of its cell."""
+    mesh = state.background_mesh
+    cell = np.repeat(np.arange(len(mesh.cell_nodes)), np.diff(start.cell_start))
+    nodal = result.equilibrium.displacement[mesh.cell_nodes[cell]]
+    deformation = np.eye(3) + np.einsum("pai,paj->pij", nodal, start.shape_gradients)
+    own = np.linalg.det(deformation)
+    scaled: np.ndarray = deformation * np.cbrt(ratio / own)[:, None, None]
+    return scaled
+
+
+def _trial_strain(deformation: np.ndarray, strain: np.ndarray) -> np.ndarray:
+    """Return the logarithmic strain (n, 3, 3) of elastic ``strain`` after a ``deformation``."""
+    values, axes = np.linalg.eigh(strain)
+    left = np.einsum("pik,pk,pjk->pij", axes, np.exp(2.0 * values), axes)
+    values, axes = np.linalg.eigh(deformation @ left @ deformation.transpose(0, 2, 1))
+    trial: np.ndarray = np.einsum("pik,pk,pjk->pij", axes, np.log(values) / 2.0, axes)
+    return trial
+
+
+PROBLEM = Problem("PC2", "Work of the rig on a screw pile", screw_pile_work, is_quick=False)
