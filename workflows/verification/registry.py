@@ -28,6 +28,7 @@ MODULES: tuple[str, ...] = (
     "cavity",
     "circular_footing",
     "circular_footing_mpm",
+    "circular_footing_solid",
     "column",
     "deep_cylinder",
     "flexible_load",

@@ -75,36 +75,35 @@ def screw_pile_work(
         splits.append(soil_work(problem, state, result))
         residuals.append(tuple(result.equilibrium.newton.residuals))
         state = accept(problem, state, result, pose, 0.5 * D * angle)
-    return _outcome(Work(*np.transpose(works[1:])), SoilWork(*np.transpose(splits[1:])), residuals)
+    return _outcome(works[1:], splits[1:], residuals)
 
 
-def _outcome(work: Work, split: SoilWork, residuals: list[tuple[float, ...]]) -> Outcome:
-    """Return the checks; the fields of ``work`` and ``split`` are arrays (n_steps,)."""
-    rig = np.asarray(work.rig)
-    balance = work.interface + work.soil - work.weight - rig
-    steady = slice(STEADY_FROM, None)
-    total = rig[steady].sum()
-    taken = (work.interface + split.stored + split.dissipated - work.weight)[steady].sum()
-    number = tuple(map(float, range(1, len(rig) + 1)))
+def _outcome(
+    works: list[Work], splits: list[SoilWork], residuals: list[tuple[float, ...]]
+) -> Outcome:
+    """Return the checks and the curve of all steps."""
+    rig, interface, soil, weight = np.transpose(works)
+    stored, dissipated, least = np.transpose(splits)
+    late = slice(STEADY_FROM, None)
+    total = rig[late].sum()
+    shares = [part[late].sum() / total for part in (interface, stored, dissipated, -weight)]
+    error = np.abs((interface + soil - weight) / rig - 1.0).max()
     return Outcome(
         (
-            at_most("largest error of the balance in a step over the work of the rig",
-                    np.abs(balance / rig).max(), 0.02),
-            absolute("work taken up by interface, elastic store, dissipation and weight, over that"
-                     " of the rig", taken / total, 1.0, 0.02),
-            at_most("smallest dissipation at a point over the work of the rig, below zero",
-                    max(-np.min(split.least_dissipated / rig), 0.0), 1e-9),
+            at_most("largest error of the balance in a step over the work of the rig", error, 0.02),
+            absolute("work in interface, elastic store, dissipation and weight, over that of the"
+                     " rig", sum(shares), 1.0, 0.02),
+            at_most("smallest dissipation at a point over the work of the rig, if negative",
+                    max(-np.min(least / rig), 0.0), 1e-9),
         ),
         (
-            Series("Dissipation in the soil", "step", "share of the work of the rig", number,
-                   tuple(split.dissipated / rig)),
+            Series("Dissipation in the soil", "step", "share of the work of the rig",
+                   tuple(np.arange(1.0, len(rig) + 1.0)), tuple(dissipated / rig)),
         ),
         (
-            f"of the work of the rig after step {STEADY_FROM}:"
-            f" {np.sum(work.interface[steady]) / total:.1%} in the interface,"
-            f" {np.sum(split.dissipated[steady]) / total:.1%} dissipated in the soil,"
-            f" {np.sum(split.stored[steady]) / total:.1%} stored,"
-            f" {-np.sum(work.weight[steady]) / total:.1%} against the weight",
+            f"shares of the work of the rig after step {STEADY_FROM}: {shares[0]:.1%} in the"
+            f" interface, {shares[2]:.1%} dissipated in the soil, {shares[1]:.1%} stored,"
+            f" {shares[3]:.1%} against the weight",
         ),
         tuple(residuals),
     )  # fmt: skip
@@ -118,7 +117,7 @@ def _problem(
     pile = ScrewPile(shaft, 1.2 * diameter, (helix,), UNIT_WEIGHT)
     box = Box(2.75 * diameter, 3.0 * diameter, 0.5 * diameter)
     sizes = ScrewMeshOptions(
-        *(diameter * np.array([0.25, 0.45, 0.4, 1.2, 0.05])), points_per_direction=1
+        0.25 * diameter, 0.45 * diameter, 0.4 * diameter, 1.2 * diameter, 0.05 * diameter
     )
     modulus = MODULUS_OVER_STRENGTH * strength
     soil, stiffness = VonMises(modulus, POISSON, strength), INTERFACE_STIFFNESS * modulus

@@ -50,6 +50,20 @@ def ring(radii: np.ndarray, sides: int) -> Plane:
     return Plane(vertices, triangles)
 
 
+def sector(radii: np.ndarray, angles: np.ndarray) -> Plane:
+    """Return the sector between the first and the last of ``angles`` (rad, ascending).
+
+    ``radii`` ascend from zero, in m; the innermost ring is cut into triangles around the centre.
+    """
+    bent = grid(radii[1:], angles)
+    radius, angle = bent.vertices.T
+    vertices = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    vertices[np.abs(vertices) < 1e-12 * radii[-1]] = 0.0  # on an axis of symmetry
+    first = np.arange(len(angles) - 1)
+    around = np.stack([np.full(len(first), len(vertices)), first, first + 1], 1)
+    return Plane(np.vstack([vertices, np.zeros(2)]), np.vstack([around, bent.triangles]))
+
+
 def _diagonals(index: np.ndarray) -> np.ndarray:
     """Return the two triangles of every cell of a grid of vertices ``index`` (n, m)."""
     first, last = index[:-1, :-1].ravel(), index[1:, 1:].ravel()
