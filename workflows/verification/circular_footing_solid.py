@@ -24,12 +24,14 @@ from workflows.verification.solid_meshes import extruded, quadratic_mesh, sector
 
 EXTENT = 4.0
 """Radius and depth of the ground over the radius of the footing."""
-STEPS = 16
-RELATIVE_SETTLEMENT = 80.0
-"""Settlement over R at the end, times E over su; the plateau begins at about half of it."""
+STEPS = 20
+RELATIVE_SETTLEMENT = 60.0
+"""Settlement over R at the end, times E over su; the plateau begins at about half of that."""
 ROUND_OFF = 5e-9
 COARSE, FINE = 1.0, 1.7
-"""Cells per direction over those of the coarse mesh."""
+"""Cells in radius and depth over those of the coarse mesh."""
+SECTORS = 4
+"""Sides of a quarter of the footing."""
 
 
 class Loading(NamedTuple):
@@ -80,8 +82,7 @@ def press(radius: float, soil: Tresca, fineness: float) -> Loading:
     ratio = RELATIVE_SETTLEMENT * soil.undrained_shear_strength / soil.youngs_modulus
     motion = np.zeros_like(mesh.nodes)
     motion[under, 2] = -ratio * radius / STEPS
-    side = np.pi / (2.0 * _sectors(fineness))
-    area = 0.5 * _sectors(fineness) * np.sin(side) * radius**2  # of the polygon
+    area = 0.5 * SECTORS * np.sin(0.5 * np.pi / SECTORS) * radius**2  # of the polygon
     factors, residuals = [], []
     for number in range(STEPS):
         body, result = advance(
@@ -95,16 +96,11 @@ def press(radius: float, soil: Tresca, fineness: float) -> Loading:
 
 
 def quarter_mesh(radius: float, fineness: float) -> BackgroundMesh:
-    """Return a quarter of the ground, with ``fineness`` times the cells in every direction."""
-    radii = _refined(np.array([0.0, 0.5, 0.85, 1.0, 1.3, 2.0, EXTENT]), fineness)
-    depths = _refined(np.array([0.0, 0.25, 0.75, 1.75, EXTENT]), fineness)
-    angles = np.linspace(0.0, 0.5 * np.pi, _sectors(fineness) + 1)
+    """Return a quarter of the ground, with ``fineness`` times the cells in radius and depth."""
+    radii = _refined(np.array([0.0, 0.6, 0.9, 1.0, 1.1, 1.4, 2.2, EXTENT]), fineness)
+    depths = _refined(np.array([0.0, 0.1, 0.35, 0.8, 1.8, EXTENT]), fineness)
+    angles = np.linspace(0.0, 0.5 * np.pi, SECTORS + 1)
     return quadratic_mesh(extruded(sector(radius * radii, angles), -radius * depths[::-1]))
-
-
-def _sectors(fineness: float) -> int:
-    """Return the number of sides of a quarter of the footing."""
-    return round(3 * fineness)
 
 
 def _refined(lines: np.ndarray, fineness: float) -> np.ndarray:

@@ -23,14 +23,15 @@ from install_mpm.equilibrium import youngs_modulus
 from install_mpm.ground import Ground
 from install_mpm.integration_points import IntegrationPoints
 from install_mpm.options import Box, Numerics, ScrewMeshOptions
-from install_mpm.screw_installation import accept, motion_to, step_to
+from install_mpm.screw_installation import accept, motion_to, step_to, travelled
 from install_mpm.screw_pile import Helix, ScrewPile
 from install_mpm.screw_pile_mesh import generate_screw_mesh
-from install_mpm.screw_programme import Phase, Pose, ScrewProgramme
+from install_mpm.screw_programme import Phase, Pose, ScrewProgramme, phase_travel, pose_at
 from install_mpm.screw_record import Work, work_of_step
 from install_mpm.screw_setup import ScrewInstallation, geostatic_state, set_up
 from install_mpm.state_file import InstalledState
 from install_mpm.step import StepResult
+from install_mpm.step_control import cut_control
 from workflows.verification.body import ProblemNotSolvedError
 from workflows.verification.problem import Outcome, Problem, Series, absolute, at_most
 
@@ -65,23 +66,42 @@ def screw_pile_work(
     su: Annotated[float, Unit("Pa")] = 10e3,
     alpha: float = 0.5,
     AR: float = 1.0,
-    degrees_per_step: float = 2.0,
-    steps: int = 6,
+    degrees_per_step: float = 1.0,
+    steps: int = 10,
 ) -> Outcome:
     """Return the power balance of a helix of diameter D on a shaft of diameter d in clay."""
-    problem, state = _problem(D, d, p, t, su, alpha)
+    problem, state = _problem((D, d, p, t), su, alpha, AR, np.radians(degrees_per_step))
+    end = steps * problem.programme.step
     works, splits, residuals = [], [], []
-    for number in range(steps + 1):  # the first step moves nothing
-        angle = np.radians(degrees_per_step) * number
-        pose = Pose(AR * p * angle / (2.0 * np.pi), -angle)
-        result = step_to(problem, state, pose, 1.0 if number else 0.0)
-        if not result.is_converged:
-            raise ProblemNotSolvedError(f"screw pile: step {number} does not converge")
+    pose, travel = Pose(0.0, 0.0), 0.0
+    result = step_to(problem, state, pose, 0.0)
+    while True:
         works.append(work_of_step(state, result.equilibrium, motion_to(state, pose)))
         splits.append(soil_work(problem, state, result))
         residuals.append(tuple(result.equilibrium.newton.residuals))
-        state = accept(problem, state, result, pose, 0.5 * D * angle)
-    return _outcome(works[1:], splits[1:], residuals)
+        state = accept(problem, state, result, pose, travel)
+        if travelled(state) > end * (1.0 - 1e-9):
+            return _outcome(works[1:], splits[1:], residuals)  # the first step moves nothing
+        state, result, pose, travel = _advance(problem, state, end)
+
+
+def _advance(
+    problem: ScrewInstallation, state: InstalledState, end: float
+) -> tuple[InstalledState, StepResult, Pose, float]:
+    """Return the next step towards the travel ``end`` in m, halved until it converges.
+
+    And the pose and the travel at its end.
+    """
+    while True:
+        size = min(float(state.control.step), end - travelled(state))
+        travel = travelled(state) + size
+        pose = pose_at(problem.pile, problem.programme, travel)
+        result = step_to(problem, state, pose, size / float(state.control.step))
+        if result.is_converged:
+            return state, result, pose, travel
+        if int(state.control.cuts) >= problem.numerics.max_cuts:
+            raise ProblemNotSolvedError("screw pile: a step does not converge")
+        state = state._replace(control=cut_control(state.control, size))
 
 
 def _outcome(
@@ -117,9 +137,14 @@ def _outcome(
 
 
 def _problem(
-    diameter: float, shaft: float, pitch: float, thickness: float, strength: float, alpha: float
-) -> tuple[ScrewInstallation, InstalledState]:
-    """Return the problem and its start; box and cells scale with the diameter."""
+    size: tuple[float, float, float, float], strength: float, alpha: float, ratio: float,
+    angle: float,
+) -> tuple[ScrewInstallation, InstalledState]:  # fmt: skip
+    """Return the problem and its start, for steps of ``angle`` in rad.
+
+    ``size`` is diameter, shaft diameter, pitch and thickness; box and cells scale with the first.
+    """
+    diameter, shaft, pitch, thickness = size
     helix = Helix(diameter, pitch, thickness, height=0.25 * diameter)
     pile = ScrewPile(shaft, 1.2 * diameter, (helix,), UNIT_WEIGHT)
     box = Box(2.75 * diameter, 3.0 * diameter, 0.5 * diameter)
@@ -129,9 +154,11 @@ def _problem(
     modulus = MODULUS_OVER_STRENGTH * strength
     soil, stiffness = VonMises(modulus, POISSON, strength), INTERFACE_STIFFNESS * modulus
     law = CoulombInterface(stiffness, 0.1 * stiffness, adhesion_factor=alpha)
-    programme = ScrewProgramme((Phase("in", 1.0, 1.0),), 0.02 * diameter)
+    turn = Phase("in", 1.0, ratio)
+    step = phase_travel(pile, turn) * angle / (2.0 * np.pi)
     mesh = generate_screw_mesh(pile, box, sizes)
-    problem = set_up(Ground(UNIT_WEIGHT, 1.0, soil), pile, law, box, programme, NUMERICS, mesh)
+    ground, programme = Ground(UNIT_WEIGHT, 1.0, soil), ScrewProgramme((turn,), step)
+    problem = set_up(ground, pile, law, box, programme, NUMERICS, mesh)
     return problem, geostatic_state(problem, mesh, sizes, "")
 
 
