@@ -13,7 +13,13 @@ from install_mpm.constitutive.pressure_elasticity import bulk_modulus
 from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.discretisation import Discretisation
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
-from install_mpm.interface import Contact, InterfacePoints, soil_displacement, step_axes
+from install_mpm.interface import (
+    Contact,
+    InterfacePoints,
+    add_turning_of_traction,
+    soil_displacement,
+    step_axes,
+)
 from install_mpm.kernels.carry import body_force
 from install_mpm.kernels.cell_records import CellOptions
 from install_mpm.kernels.equilibrium import evaluate_cells
@@ -245,3 +251,8 @@ class _StepSystem:
             self.interface.traction, self.axes, self.pile_displacement,
             nodal, self.element_force, self.element_stiffness, self.traction,
         )  # fmt: skip
+        if self.rotation:
+            contact = self.contact()
+            add_turning_of_traction(
+                self.element_stiffness, self.model.elements, contact.force, contact.position
+            )

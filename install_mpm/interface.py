@@ -216,6 +216,30 @@ def _turned(axes: np.ndarray, angle: np.ndarray) -> np.ndarray:
     return turned
 
 
+def add_turning_of_traction(
+    stiffness: np.ndarray, elements: InterfaceElements, forces: np.ndarray, position: np.ndarray
+) -> None:
+    """Add to ``stiffness`` that the traction turns with the soil on surfaces that are swept.
+
+    ``stiffness`` is (n_elements, n_nodes, dim, n_nodes, dim); ``forces`` (n_points, dim) in N are
+    those on the pile, at ``position`` (n_points, dim) in m, the place of the soil.
+    """
+    if elements.is_swept is None:
+        return
+    shape = elements.shape_values
+    n_points, n_facet_nodes = shape.shape
+    x, y = position[:, 0], position[:, 1]
+    swept = elements.is_swept / np.maximum(x**2 + y**2, 1e-300)
+    change, turned = np.zeros_like(position), np.zeros_like(forces)
+    change[:, 0], change[:, 1] = -swept * y, swept * x  # of the polar angle
+    turned[:, 0], turned[:, 1] = -forces[:, 1], forces[:, 0]
+    dim = position.shape[1]
+    stiffness[:, :n_facet_nodes, :, :n_facet_nodes, :] += np.einsum(
+        "qa,eqi,qb,eqj->eaibj", shape, turned.reshape(-1, n_points, dim), shape,
+        change.reshape(-1, n_points, dim), optimize=True,
+    )  # fmt: skip
+
+
 class Contact(NamedTuple):
     """Forces between pile and soil at the interface points at the end of a step."""
 
