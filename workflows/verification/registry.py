@@ -41,6 +41,7 @@ MODULES: tuple[str, ...] = (
     "strip_footing_mpm",
     "tangent_check",
     "thick_cylinder",
+    "weight_block",
 )
 """Files of this folder with a ``PROBLEM`` or ``PROBLEMS``, sorted."""
 
