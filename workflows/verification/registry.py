@@ -33,6 +33,7 @@ MODULES: tuple[str, ...] = (
     "paper_penetration",
     "rigid_disc",
     "sand_cavity",
+    "sand_footing_factors",
     "scheme_comparison",
     "shaft_friction",
     "sliding_block",

@@ -5,6 +5,21 @@ Mohr-Coulomb soil its iterations stall, and elements are inverted.  The block is
 supported on its base and sides, and its gravity grows in equal steps.  Its cross section cannot
 change, so the vertical Cauchy stress is - rho g (H - Y), Y the original height, whatever the soil;
 with nu / (1 - nu) below the ratio K_a the soil yields below the depth at which cohesion ends.
+
+Both horizontal stresses are then K_a times the vertical one: the state is on an edge.  There, with
+the modulus M of one-dimensional compression and the tangent G_t of shear, soil without dilation has
+the acoustic determinant
+
+    det Q(n) = M G_t (K_a n_x^2 - n_y^2) (n_x^2 - n_y^2) ,
+
+negative for n_y^2 between K_a n_x^2 and n_x^2: the equations are not elliptic, and any disturbance
+of the one-dimensional state grows from step to step until neighbouring points leave the edge in
+turn and the iterations stall.  So the discretisation must not disturb it.  Squares that are cut by
+both diagonals into linear triangles have all their nodes on planes of symmetry, where nothing is
+left but round-off.  Linear triangles with one diagonal a square load the two upper corners
+differently, and quadratic ones integrate the kink of the horizontal stress at the depth of first
+yield with an error.  A body of revolution has no such planes; there the mesh is quadratic, and with
+little cohesion the first steps take more iterations.
 """
 
 from __future__ import annotations
@@ -50,15 +65,16 @@ def weight_block(
     weight
         Unit weight in N/m^3 of the undeformed soil.
     n
-        Distances of nodes per side: a square of two quadratic triangles has two.
+        Distances of nodes per side, even in axisymmetry: a quadratic triangle has two.
 
     Raises
     ------
     ProblemNotSolvedError
         If a step does not converge; none is repeated or cut.
     """
-    lines = np.linspace(0.0, height, n // 2 + 1)
-    mesh = rectangle_mesh(lines, lines)
+    is_plane = kinematics == Kinematics.PLANE_STRAIN
+    lines = np.linspace(0.0, height, (n if is_plane else n // 2) + 1)
+    mesh = rectangle_mesh(lines, lines, is_crossed=is_plane, is_quadratic=not is_plane)
     is_soil = np.ones(len(mesh.cell_nodes), dtype=bool)
     body = with_weight_of_points(
         make_body(mesh, Ground(0.0, 1.0, soil), kinematics=kinematics, is_soil=is_soil,
