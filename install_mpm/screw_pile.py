@@ -32,7 +32,7 @@ class Helix:
     height: Annotated[float, Unit("m"), Ge(0)]
     """Of the middle of the leading edge above the pile tip."""
     turns: Annotated[float, Gt(0), Le(4)] = 1.0
-    edge_thickness: Annotated[float, Unit("m"), Gt(0)] | None = None
+    edge_thickness: Annotated[float | None, Unit("m"), Gt(0)] = None
     """At the leading and trailing edge; by default that of the plate (blunt edges)."""
     taper_angle: Annotated[float, Unit("rad"), Gt(0), Lt(3.2)] = 1.0
     """Winding angle over which the plate thins towards an edge of another thickness."""

@@ -26,9 +26,9 @@ class Phase:
     name: str
     turns: Annotated[float, Ge(-20), Le(20)] = 0.0
     """Positive in the sense in which the helices draw the pile down."""
-    advancement_ratio: Annotated[float, Ge(0), Le(3)] | None = None
+    advancement_ratio: Annotated[float | None, Ge(0), Le(3)] = None
     """Advance per turn over the pitch of the lowest helix; 1: pitch-matched."""
-    advance: Annotated[float, Unit("m")] | None = None
+    advance: Annotated[float | None, Unit("m")] = None
     """Instead of the ratio, or without turns: positive downward."""
 
 

@@ -74,6 +74,7 @@ def integration_points(mesh, rng, soil):
     return IntegrationPoints(
         cell_start=np.arange(n_cells + 1) * 4,
         reference_coordinates=np.tile(cell.integration_coordinates, (n_cells, 1)),
+        shape_values=geometry.shape_values.reshape(n, 10),
         shape_gradients=geometry.shape_gradients.reshape(n, 10, 3),
         hoop_gradients=geometry.hoop_gradients.reshape(n, 10),
         volume=geometry.integration_volume.ravel() * rng.uniform(0.5, 1.0, n),
