@@ -11,14 +11,14 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from install_mpm.background_mesh import BackgroundMesh, cell_quality
-from install_mpm.screw_pile import PARTS_OF_HELIX, PARTS_OF_PILE, ScrewPile
+from install_mpm.screw_pile import PARTS_OF_HELIX, PARTS_OF_PILE
 from install_mpm.screw_programme import rim_radius
 from install_mpm.screw_surface import pile_elements
 from workflows.report_fields import colour_bar
 from workflows.report_style import INK, PILE, SEQUENTIAL, panels, png_of, styled
 from workflows.screw_case import ScrewCase
 from workflows.screw_frames import vertex_mesh
-from workflows.screw_surface_pictures import ABOVE, BELOW, ROWS, draw_image, frame_around
+from workflows.screw_surface_pictures import ROWS, draw_image, frame_around, views_of
 from workflows.screw_view import (
     OVERSAMPLING,
     Frame,
@@ -48,14 +48,14 @@ def mesh_figure(case: ScrewCase, mesh: BackgroundMesh) -> Figure:
     """Return the surface of the pile with the facets of the mesh, and the cut in the plane y = 0."""
     elements, part, _ = pile_elements(mesh, case.pile)
     triangles = mesh.nodes[elements.nodes[:, :3]]
-    frames = [frame_around(case.pile, view, 0.0) for view in (ABOVE, BELOW)]
-    ratio = max((f.top - f.bottom) / (f.right - f.left) for f in frames)
-    figure, axes = panels(1, 3, 12.0, 3.0 * ratio + 0.6, width_ratios=(1.0, 1.0, 1.5))
-    for here, view, frame in zip(axes[0], (ABOVE, BELOW), frames, strict=False):
+    views = views_of(case.pile, 0.0)
+    frames = [frame_around(case.pile, view, 0.0) for view in views]
+    figure, axes = panels(1, 3, 12.0, 5.6, width_ratios=(1.0, 1.0, 1.6))
+    for here, view, frame in zip(axes[0], views, frames, strict=False):
         draw_image(here, _facets(triangles, part, view, frame), frame)
     axes[0, 0].set_title(f"pile surface: {len(part)} facets")
     axes[0, 1].set_title("from below")
-    axes[0, 0].legend(handles=_legend(case.pile, part), loc="upper left", fontsize=7.0)
+    figure.legend(handles=_legend(part), loc="outside lower left", ncols=4, handlelength=1.2)
     _draw_cut(figure, axes[0, 2], case, mesh)
     return figure
 
@@ -71,12 +71,12 @@ def _facets(triangles: np.ndarray, part: np.ndarray, view: View, frame: Frame) -
     raster = rasterise(triangles, view, frame, OVERSAMPLING * ROWS)
     values = np.repeat(kind_of(part)[:, None], 3, axis=1).astype(np.float64)
     palette, norm = ListedColormap(PART_COLOURS), Normalize(-0.5, len(PART_COLOURS) - 0.5)
-    picture = colour(raster, values, shading(triangles, view), lambda v: palette(norm(v)))
+    picture = colour(raster, values, shading(triangles, view, 0.5), lambda v: palette(norm(v)))
     picture = ink(picture, mesh_lines(raster, triangles, view, 1.2 * OVERSAMPLING), 0.45)
     return smoothed(ink(picture, feature_edges(raster, part), 0.9))
 
 
-def _legend(pile: ScrewPile, part: np.ndarray) -> list[Patch]:
+def _legend(part: np.ndarray) -> list[Patch]:
     names, kinds = PARTS_OF_PILE + PARTS_OF_HELIX, np.unique(kind_of(part))
     return [Patch(facecolor=PART_COLOURS[kind], label=names[kind]) for kind in kinds]
 
@@ -98,7 +98,7 @@ def _draw_cut(figure: Figure, axes: Any, case: ScrewCase, mesh: BackgroundMesh) 
     axes.axhline(0.0, color=INK, linewidth=1.2)
     worst = cell_quality(mesh).min()
     axes.set_title(f"cut y = 0: {len(mesh.cell_nodes)} cells, worst shape {worst:.2f}")
-    colour_bar(figure, drawn, axes, "shape 3 r_in / r_out of the cells, 1 is regular")
+    colour_bar(figure, drawn, axes, "shape $3\\,r_{in}/r_{out}$ of the cells, 1 is regular")
 
 
 def plane_section(nodes: np.ndarray, cells: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:

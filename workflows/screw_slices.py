@@ -10,12 +10,17 @@ from scipy.spatial import cKDTree
 from install_mpm.ground import GroundProfile, geostatic_stress
 from install_mpm.screw_pile import ScrewPile, thickness_at, winding_angle
 from install_mpm.screw_programme import Pose, rim_radius
-from workflows.report_fields import REACH
 from workflows.report_style import INK, PILE
 from workflows.screw_frames import PointCloud
 
 PIXELS = 480
 """Pixels across a slice."""
+
+REACH = 2.5
+"""Distance from its point, over the point's size, to which soil is drawn; cells are not cubes."""
+
+ARROWS = 26
+"""Arrows of displacement across a slice."""
 
 MARGIN = 2.6
 """Half-width of a slice over the radius of the largest plate."""
@@ -47,9 +52,10 @@ def vertical_slice(
     """Return the plane through the axis, from below the deepest tip ``depth`` to ``headroom``."""
     reach = min(MARGIN * rim_radius(pile), 0.98 * box_width)
     bottom = -depth - 1.6 * rim_radius(pile)
+    top = min(headroom, 0.6 * rim_radius(pile))
     size = 2.0 * reach / pixels
     x = np.arange(-reach + size / 2.0, reach, size)
-    z = np.arange(bottom + size / 2.0, headroom, size)
+    z = np.arange(bottom + size / 2.0, top, size)
     across, up = np.meshgrid(x, z)
     places = np.stack([across, np.zeros_like(across), up], axis=-1)
     return Slice(places, (-reach, reach, bottom, bottom + len(z) * size), (0, 2))
@@ -142,26 +148,24 @@ def mean_pressure_change(ground: GroundProfile, cloud: PointCloud) -> np.ndarray
 
 
 def draw_arrows(axes: Any, plane: Slice, soil: SoilPixels, displacement: np.ndarray) -> None:
-    """Draw where the soil went: ``displacement`` (n, 3) of points, its part in the plane."""
-    rows, columns = soil.index.shape
-    step = max(1, columns // 26)
-    chosen = soil.index[step // 2 :: step, step // 2 :: step]
-    places = plane.places[step // 2 :: step, step // 2 :: step]
-    seen = chosen >= 0
-    across, up = plane.axes
-    moved = displacement[chosen[seen]][:, [across, up]]
+    """Draw where the soil went: ``displacement`` (n, 3) of points, its part in the plane.
+
+    Arrows are to scale among themselves; the longest few are cut to the length of the others.
+    """
+    step = max(1, soil.index.shape[1] // ARROWS)
+    chosen = (slice(step // 2, None, step),) * 2
+    seen = soil.index[chosen] >= 0
+    start = plane.places[chosen][seen][:, plane.axes]
+    moved = displacement[soil.index[chosen][seen]][:, plane.axes]
     length = np.linalg.norm(moved, axis=1)
-    visible = length > 0.04 * np.percentile(length, 99.0) if len(length) else length > 0.0
-    start = places[seen][visible]
-    axes.quiver(
-        start[:, across], start[:, up], *moved[visible].T, color=INK, pivot="tail", width=0.003,
-        angles="xy", scale_units="xy", scale=_arrow_scale(plane, length, step),
-    )  # fmt: skip
-
-
-def _arrow_scale(plane: Slice, length: np.ndarray, step: int) -> float:
-    """Return by how much arrows are shorter than the displacement, to keep them apart."""
+    if not length.any():
+        return
+    longest = np.percentile(length, 97.0)
+    visible = length > 0.06 * longest
+    moved *= np.minimum(1.0, longest / np.maximum(length, 1e-300))[:, None]
     left, right, _, _ = plane.extent
-    spacing = (right - left) * step / plane.places.shape[1]
-    longest = float(np.percentile(length, 98.0)) if len(length) else 0.0
-    return longest / (1.6 * spacing) if longest > 0.0 else 1.0
+    spacing = (right - left) * step / soil.index.shape[1]
+    axes.quiver(
+        *start[visible].T, *moved[visible].T, color=INK, width=0.0028, headwidth=4.0,
+        angles="xy", scale_units="xy", scale=longest / (1.7 * spacing),
+    )  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
@@ -12,9 +12,9 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from install_mpm.screw_pile import ScrewPile
-from install_mpm.screw_programme import rim_radius
-from workflows.report_fields import colour_bar, positive_norm
-from workflows.report_style import panels
+from install_mpm.screw_programme import Pose, rim_radius
+from workflows.report_fields import colour_bar, positive_norm, symmetric_norm
+from workflows.report_style import DIVERGING, INTENSITY, PILE, SEQUENTIAL, panels
 from workflows.screw_frames import PileSurface
 from workflows.screw_view import (
     OVERSAMPLING,
@@ -29,20 +29,28 @@ from workflows.screw_view import (
     view_from,
 )
 
-ABOVE = view_from(np.radians(-50.0), np.radians(22.0))
-BELOW = view_from(np.radians(-50.0), np.radians(-28.0))
-"""Directions from which a pile is looked at."""
+AZIMUTH = np.radians(-50.0)
+"""Of the viewer from the leading edge of the lowest helix of a right-handed pile."""
 
-ROWS = 620
+ABOVE, BELOW = np.radians(22.0), np.radians(-28.0)
+"""Elevation of the viewer."""
+
+DARKEST = 0.72
+"""Brightness of a facet that the light does not reach: colours can still be read."""
+
+ROWS = 440
 """Pixels of the height of a picture."""
 
 AROUND = 1.15
 """Radius of the picture of a pile over the radius of its largest plate."""
 
-TRACTION_MAPS = ("viridis", "magma")
-"""Colours of contact pressure and shear traction."""
-
 Colours = Callable[[np.ndarray], np.ndarray]
+
+
+def views_of(pile: ScrewPile, rotation: float) -> tuple[View, View]:
+    """Return the views from above and from below of a pile that has turned by ``rotation``."""
+    azimuth = rotation + pile.sense * AZIMUTH
+    return view_from(azimuth, ABOVE), view_from(azimuth, BELOW)
 
 
 def frame_around(pile: ScrewPile, view: View, advance: float) -> Frame:
@@ -50,9 +58,16 @@ def frame_around(pile: ScrewPile, view: View, advance: float) -> Frame:
     reach = AROUND * rim_radius(pile)
     tops = [h.height + h.pitch * h.turns + h.thickness / 2.0 for h in pile.helices]
     upper = min(max([2.0 * reach, *(top + 0.7 * reach for top in tops)]), pile.embedment + reach)
-    low, high = -pile.embedment - advance, -pile.embedment - advance + upper
-    flat, tilt = view.up[2], abs(view.towards[2])
-    return Frame(-reach, reach, low * flat - tilt * reach, high * flat + 0.3 * tilt * reach)
+    flat, tilt, tip = view.up[2], abs(view.towards[2]), -pile.embedment - advance
+    lows = [
+        (height - pile.embedment - advance) * flat - tilt * radius
+        for height, radius in (
+            (0.0, pile.shaft_radius if pile.tip_length == 0.0 else 0.0),
+            *((h.height - h.thickness / 2.0, h.radius) for h in pile.helices),
+        )
+    ]
+    high = (tip + upper) * flat + 0.3 * tilt * reach
+    return Frame(-reach, reach, min(lows) - 0.08 * reach, high)
 
 
 def surface_image(
@@ -60,7 +75,7 @@ def surface_image(
 ) -> np.ndarray:
     """Return the picture (rows, columns, 4) of the pile with ``values`` (n, 3) as colours."""
     raster = rasterise(surface.corners, view, frame, OVERSAMPLING * rows)
-    picture = colour(raster, values, shading(surface.corners, view), colours)
+    picture = colour(raster, values, shading(surface.corners, view, DARKEST), colours)
     return smoothed(ink(picture, feature_edges(raster, surface.part), 0.85))
 
 
@@ -71,35 +86,57 @@ def draw_image(axes: Any, picture: np.ndarray, frame: Frame) -> None:
     axes.set_aspect("equal")
 
 
-def tractions(pile: ScrewPile, surface: PileSurface, advance: float) -> Figure:
+def tractions(pile: ScrewPile, surface: PileSurface, pose: Pose) -> Figure:
     """Return the pile surface with contact pressure and shear, from above and from below."""
-    views = (ABOVE, BELOW)
-    frames = [frame_around(pile, view, advance) for view in views]
+    views = views_of(pile, pose.rotation)
+    frames = [frame_around(pile, view, pose.advance) for view in views]
     ratio = max((f.top - f.bottom) / (f.right - f.left) for f in frames)
-    figure, axes = panels(1, 4, 10.0, 2.35 * ratio + 0.75)
-    for number, (values, norm, label, extend) in enumerate(traction_values(surface)):
-        colours, pair = mapping(TRACTION_MAPS[number], norm), axes[0, 2 * number : 2 * number + 2]
+    figure, axes = panels(1, 4, 10.0, 2.45 * ratio + 0.8)
+    for number, field in enumerate(traction_fields(surface)):
+        colours, pair = mapping(field), axes[0, 2 * number : 2 * number + 2]
         for here, view, frame in zip(pair, views, frames, strict=True):
-            draw_image(here, surface_image(surface, view, frame, ROWS, values, colours), frame)
-        colour_bar(figure, ScalarMappable(norm, TRACTION_MAPS[number]), list(pair), label, extend)
+            picture = surface_image(surface, view, frame, ROWS, field.values, colours)
+            draw_image(here, picture, frame)
+        colour_bar(figure, ScalarMappable(field.norm, field.cmap), list(pair), field.label,
+                   field.extend)  # fmt: skip
     return figure
 
 
-def traction_values(surface: PileSurface) -> list[tuple[np.ndarray, Normalize, str, str]]:
-    """Return contact pressure and shear (n, 3) in kPa, each with its range and its name."""
+class TractionField(NamedTuple):
+    """A traction on the pile surface with the way in which it is shown."""
+
+    values: np.ndarray
+    """(n, 3) in kPa, NaN above the ground."""
+    norm: Normalize
+    cmap: str
+    label: str
+    extend: str
+
+
+def traction_fields(surface: PileSurface) -> tuple[TractionField, TractionField]:
+    """Return contact pressure and shear traction."""
     is_buried = surface.corners[:, :, 2].mean(axis=1) < 0.0
-    pressure, shear = surface.pressure / 1e3, surface.shear / 1e3
-    if not is_buried.any():
-        raise ValueError("no facet of the pile surface lies in the ground")
-    low, high = np.percentile(pressure[is_buried], (2.0, 98.0))
-    pressure_norm = Normalize(float(low), float(max(high, low + 1e-3)))
-    return [
-        (pressure, pressure_norm, "contact pressure (kPa)", "both"),
-        (shear, positive_norm(shear[is_buried]), "shear traction (kPa)", "max"),
-    ]
+    pressure, shear = (
+        np.where(is_buried[:, None], values / 1e3, np.nan)
+        for values in (surface.pressure, surface.shear)
+    )
+    known = pressure[is_buried]
+    is_signed = np.percentile(known, 3.0) < 0.0
+    return (
+        TractionField(
+            pressure,
+            symmetric_norm(known) if is_signed else positive_norm(known),
+            DIVERGING if is_signed else SEQUENTIAL,
+            "contact pressure (kPa)",
+            "both" if is_signed else "max",
+        ),
+        TractionField(
+            shear, positive_norm(shear[is_buried]), INTENSITY, "shear traction (kPa)", "max"
+        ),
+    )
 
 
-def mapping(cmap: str, norm: Normalize) -> Colours:
-    """Return the function that gives the colours (n, 4) of values (n,)."""
-    chosen = colormaps[cmap]
-    return lambda values: np.asarray(chosen(norm(values)))
+def mapping(field: TractionField) -> Colours:
+    """Return the function that gives the colours (n, 4) of values (n,); grey where there is none."""
+    chosen = colormaps[field.cmap].with_extremes(bad=PILE)
+    return lambda values: np.asarray(chosen(np.ma.masked_invalid(field.norm(values))))

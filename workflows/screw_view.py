@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-LIGHT = np.array([-0.35, 0.55, 0.75])
-"""Direction to the light: to the right, upward and towards the viewer."""
+LIGHT = np.array([-0.45, 0.35, 1.0])
+"""Direction to the light: from the left, from above and from the viewer."""
 
-DARKEST = 0.62
-"""Brightness of a facet that the light does not reach."""
+EDGE_WIDTH = 1
+"""Pixels, of those drawn, by which an edge is widened on either side."""
 
-OVERSAMPLING = 3
+OVERSAMPLING = 2
 """Pixels drawn per pixel of the picture in each direction, for smooth edges."""
 
 INK_COLOUR = np.array([0.106, 0.165, 0.220])
@@ -117,13 +117,16 @@ def _draw(
     shares[window][is_seen] = np.stack([at_a, at_b, at_c], axis=-1)[is_seen]
 
 
-def shading(triangles: np.ndarray, view: View) -> np.ndarray:
-    """Return the brightness (n,) of triangles, either side of which may be seen."""
+def shading(triangles: np.ndarray, view: View, darkest: float) -> np.ndarray:
+    """Return the brightness (n,) of triangles, either side of which may be seen.
+
+    ``darkest`` is that of one that the light does not reach.
+    """
     normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     normal *= np.where(normal @ view.towards < 0.0, -1.0, 1.0)[:, None]
     light = project(normal, view) @ (LIGHT / np.linalg.norm(LIGHT))
-    brightness: np.ndarray = DARKEST + (1.0 - DARKEST) * np.clip(light, 0.0, 1.0)
+    brightness: np.ndarray = darkest + (1.0 - darkest) * np.clip(light, 0.0, 1.0)
     return brightness
 
 
@@ -146,13 +149,15 @@ def feature_edges(raster: Raster, groups: np.ndarray) -> np.ndarray:
     group = np.where(raster.triangle >= 0, groups[raster.triangle], -1)
     jump = DEPTH_STEP * (raster.frame.top - raster.frame.bottom)
     depth = np.where(np.isfinite(raster.depth), raster.depth, -1e30)
-    edges = np.zeros(group.shape, dtype=bool)
+    edges, wider = np.zeros(group.shape, dtype=bool), np.zeros(group.shape, dtype=bool)
     for axis in (0, 1):
         ahead = np.roll(group, -1, axis), np.roll(depth, -1, axis)
         changes = (group != ahead[0]) | (np.abs(depth - ahead[1]) > jump)
         changes[(slice(None),) * axis + (-1,)] = False
-        edges |= changes | np.roll(changes, 1, axis)
-    return edges
+        edges |= changes
+    for shift in range(-EDGE_WIDTH, EDGE_WIDTH + 1):
+        wider |= np.roll(edges, shift, 0) | np.roll(edges, shift, 1)
+    return wider
 
 
 def mesh_lines(raster: Raster, triangles: np.ndarray, view: View, width: float) -> np.ndarray:
