@@ -196,8 +196,9 @@ def _progress(state: InstalledState, end: float) -> InstallationProgress:
     history = state.history
     return InstallationProgress(
         load_step=len(history.travel) - 1,
-        penetration=float(history.travel[-1]),
+        travel=float(history.travel[-1]),
         target=end,
+        penetration=float(history.penetration[-1]),
         crowd_force=float(history.crowd_force[-1]),
         iterations=int(history.iterations[-1]),
         cuts=int(history.cuts[-1]),

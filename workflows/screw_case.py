@@ -19,7 +19,7 @@ from install_mpm.screw_programme import (
     phase_motion,
     rim_radius,
 )
-from workflows.cross_checks import check_ground, check_solver
+from workflows.cross_checks import check_ground, check_interface, check_solver
 from workflows.errors import CaseError
 
 LARGEST_ON_PLATE = 3.5
@@ -74,6 +74,7 @@ def check_screw_case(case: ScrewCase) -> None:
     _check_box(case)
     _check_sizes(case)
     check_ground(case)
+    check_interface(case)
     check_solver(case)
 
 
