@@ -23,6 +23,7 @@ KIND_COLOURS = {
 SMALL = 0.002
 """Share of the largest torque below which a kind of part is left out of a picture."""
 
+
 def turns(pile: ScrewPile, history: ScrewHistory) -> np.ndarray:
     """Return the rotation (n_steps,) in turns, positive in the sense that drives the pile down."""
     turned: np.ndarray = -pile.sense * history.rotation / (2.0 * np.pi)
@@ -144,7 +145,7 @@ def balance_error(history: ScrewHistory) -> np.ndarray:
 
 
 def work(pile: ScrewPile, history: ScrewHistory) -> Figure:
-    """Return the work of rig, interface, soil and weight, summed up, and the error of the balance."""
+    """Return the work of rig, interface, soil and weight since the start, and the error of it."""
     figure, axes = panels(1, 2, 10.0, 3.4, width_ratios=(1.3, 1.0))
     along, label = abscissa(pile, history)
     here = axes[0, 0]
@@ -162,7 +163,9 @@ def work(pile: ScrewPile, history: ScrewHistory) -> Figure:
     error = balance_error(history)
     there = axes[0, 1]
     there.semilogy(along[error > 0.0], error[error > 0.0], color=INSTALLED, linewidth=1.1)
-    there.set(xlabel=label, ylabel="error / work of the rig", title="error of the balance, each step")
+    there.set(
+        xlabel=label, ylabel="error / work of the rig", title="error of the balance, each step"
+    )
     for each in (here, there):
         grid(each)
     return figure
@@ -233,9 +236,7 @@ def irregularities(pile: ScrewPile, history: ScrewHistory) -> Figure:
     return figure
 
 
-def _steps(
-    axes: Any, along: np.ndarray, series: tuple[tuple[np.ndarray, str, str], ...]
-) -> None:
+def _steps(axes: Any, along: np.ndarray, series: tuple[tuple[np.ndarray, str, str], ...]) -> None:
     """Draw what happened in each step, from zero, with room for the legend."""
     for values, name, colour in series:
         axes.step(along, values, where="mid", color=colour, label=name, linewidth=1.2)
@@ -264,4 +265,3 @@ def far_field(case: ScrewCase, history: ScrewHistory) -> Figure:
     here.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0))
     grid(here)
     return figure
-

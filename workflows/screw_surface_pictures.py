@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from install_mpm.screw_pile import ScrewPile
 from install_mpm.screw_programme import Pose, rim_radius
 from workflows.report_fields import colour_bar, positive_norm, symmetric_norm
-from workflows.report_style import DIVERGING, INTENSITY, PILE, SEQUENTIAL, panels
+from workflows.report_style import DIVERGING, PILE, SEQUENTIAL, panels
 from workflows.screw_frames import PileSurface
 from workflows.screw_view import (
     OVERSAMPLING,
@@ -43,6 +43,9 @@ ROWS = 440
 
 AROUND = 1.15
 """Radius of the picture of a pile over the radius of its largest plate."""
+
+UNUSUAL = 0.02
+"""Share of the area with the largest, and with the smallest, pressures: beyond the colours."""
 
 Colours = Callable[[np.ndarray], np.ndarray]
 
@@ -120,8 +123,8 @@ def traction_fields(surface: PileSurface) -> tuple[TractionField, TractionField]
         np.where(is_buried[:, None], values / 1e3, np.nan)
         for values in (surface.pressure, surface.shear)
     )
-    known = pressure[is_buried]
-    is_signed = np.percentile(known, 3.0) < 0.0
+    known = np.clip(pressure[is_buried], *_usual_range(surface, pressure, is_buried))
+    is_signed = known.min() < 0.0
     return (
         TractionField(
             pressure,
@@ -131,12 +134,29 @@ def traction_fields(surface: PileSurface) -> tuple[TractionField, TractionField]
             "both" if is_signed else "max",
         ),
         TractionField(
-            shear, positive_norm(shear[is_buried]), INTENSITY, "shear traction (kPa)", "max"
+            shear, positive_norm(shear[is_buried]), SEQUENTIAL, "shear traction (kPa)", "max"
         ),
     )
 
 
+def _usual_range(
+    surface: PileSurface, values: np.ndarray, selected: np.ndarray
+) -> tuple[float, float]:
+    """Return the range of values (n, 3) of the ``selected`` facets without the unusual ones.
+
+    Shares are those of the area: the many small facets at the edges count little.
+    """
+    corners = surface.corners[selected]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = np.repeat(np.linalg.norm(normal, axis=1), 3)
+    flat = values[selected].ravel()
+    order = np.argsort(flat)
+    share = np.cumsum(area[order]) / area.sum()
+    low, high = np.interp((UNUSUAL, 1.0 - UNUSUAL), share, flat[order])
+    return float(low), float(high)
+
+
 def mapping(field: TractionField) -> Colours:
-    """Return the function that gives the colours (n, 4) of values (n,); grey where there is none."""
+    """Return the function that gives the colours (n, 4) of values (n,), grey where one is NaN."""
     chosen = colormaps[field.cmap].with_extremes(bad=PILE)
     return lambda values: np.asarray(chosen(np.ma.masked_invalid(field.norm(values))))

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import trapezoid
 
+from install_mpm.constitutive.coulomb_interface import COHESION, TAN_FRICTION
 from install_mpm.interface import InterfacePoints
 from install_mpm.screw_history import ScrewHistory
 from install_mpm.screw_pile import (
@@ -32,9 +33,6 @@ from install_mpm.screw_pile import (
 from install_mpm.screw_record import plate_volume
 from install_mpm.state_file import InstalledState
 from workflows.verification.references.screw_pile import helix_resistance, shaft_resistance
-
-COHESION, TAN_FRICTION = 2, 3
-"""Columns of the parameters of interface points."""
 
 LEAST_ROTATION = 1e-3
 """Rotation of a step times the shaft radius, over its advance, below which there is no torque."""
@@ -88,9 +86,7 @@ def part_torques(pile: ScrewPile, installed: InstalledState) -> list[PartTorque]
     history: ScrewHistory = installed.history
     motion = last_motion(pile, history)
     forms = _closed_forms(pile, installed, motion)
-    area = np.bincount(
-        installed.interface.part, installed.interface.area, len(part_names(pile))
-    )
+    area = np.bincount(installed.interface.part, installed.interface.area, len(part_names(pile)))
     return [
         PartTorque(
             name,
@@ -103,9 +99,7 @@ def part_torques(pile: ScrewPile, installed: InstalledState) -> list[PartTorque]
     ]
 
 
-def _closed_forms(
-    pile: ScrewPile, installed: InstalledState, motion: Motion
-) -> dict[int, float]:
+def _closed_forms(pile: ScrewPile, installed: InstalledState, motion: Motion) -> dict[int, float]:
     """Return the closed forms in N m by part; none for a pile that does not turn."""
     if abs(motion.turn) * pile.shaft_radius <= LEAST_ROTATION * abs(motion.advance):
         return {}
