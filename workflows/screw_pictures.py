@@ -45,7 +45,7 @@ def mesh_picture(case: ScrewCase, mesh: BackgroundMesh) -> bytes:
 
 
 def mesh_figure(case: ScrewCase, mesh: BackgroundMesh) -> Figure:
-    """Return the surface of the pile with the facets of the mesh, and the cut in the plane y = 0."""
+    """Return the surface of the pile with the facets of the mesh, and the cut y = 0."""
     elements, part, _ = pile_elements(mesh, case.pile)
     triangles = mesh.nodes[elements.nodes[:, :3]]
     views = views_of(case.pile, 0.0)
