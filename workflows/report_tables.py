@@ -27,7 +27,10 @@ SECTIONS = (
 )  # fmt: skip
 """Sections of the case that the table shows; the rest stands in the text of the case."""
 
-NAMES = {"k0": "K₀", "youngs_modulus": "Young's modulus", "poissons_ratio": "Poisson's ratio"}
+NAMES = {
+    "k0": "K₀", "youngs_modulus": "Young's modulus", "poissons_ratio": "Poisson's ratio",
+    "helices": "helix", "phases": "phase", "layers": "layer",
+}  # fmt: skip
 """Words for names of the code that do not read as such."""
 
 Row = list[str | Cell]
@@ -123,7 +126,7 @@ def option_rows(options: Any) -> Iterator[Row]:
             continue
         if isinstance(value, tuple) and value and hasattr(value[0], "__dataclass_fields__"):
             for position, entry in enumerate(value, 1):
-                yield [Cell(cell(f"{spaced(field.name)} {position}").html, "group"), ""]
+                yield [Cell(cell(f"{NAMES[field.name]} {position}").html, "group"), ""]
                 yield from option_rows(entry)
             continue
         if value is None:

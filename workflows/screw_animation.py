@@ -40,8 +40,8 @@ from workflows.screw_view import Frame, View
 
 MOST_FRAMES = 32
 MOST_BYTES = 3_000_000
-COLOURS = 240
-"""Colours of the animation, those of three of its pictures."""
+COLOURS = 256
+"""Colours of a picture."""
 
 DURATION, LAST_DURATION = 110, 1600
 """Of a picture and of the last one, in ms."""
@@ -163,13 +163,8 @@ def _drawn(figure: Figure) -> Image.Image:
 
 
 def _gif(pictures: list[Image.Image]) -> bytes:
-    """Return pictures as a GIF that repeats."""
-    width, height = pictures[0].size
-    sample = Image.new("RGB", (width, 3 * height))
-    for row, picture in enumerate((pictures[0], pictures[len(pictures) // 2], pictures[-1])):
-        sample.paste(picture, (0, row * height))
-    palette = sample.quantize(COLOURS, method=Image.Quantize.MAXCOVERAGE)
-    frames = [picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
+    """Return pictures as a GIF that repeats, each with colours of its own."""
+    frames = [picture.quantize(COLOURS, dither=Image.Dither.NONE) for picture in pictures]
     buffer = io.BytesIO()
     frames[0].save(
         buffer, format="GIF", save_all=True, append_images=frames[1:], loop=0, optimize=True,

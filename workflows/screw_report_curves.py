@@ -39,25 +39,28 @@ def abscissa(pile: ScrewPile, history: ScrewHistory) -> tuple[np.ndarray, str]:
 
 
 def torque_and_force(case: ScrewCase, history: ScrewHistory) -> Figure:
-    """Return torque and crowd force against the depth of the tip, and against rotation."""
+    """Return torque and crowd force against the depth of the tip, and against rotation.
+
+    Dotted: the rig lets go.
+    """
     figure, axes = panels(2, 2, 10.0, 6.0, height_ratios=(1.35, 1.0))
     depth, turned = case.pile.embedment + history.penetration, turns(case.pile, history)
+    n = int((history.release_share == 0.0).sum())
     for column, (values, colour, label) in enumerate(
         (
-            (history.torque, INSTALLED, "torque (kN m)"),
-            (history.crowd_force, WISHED, "crowd force, downward (kN)"),
+            (history.torque / 1e3, INSTALLED, "torque (kN m)"),
+            (history.crowd_force / 1e3, WISHED, "crowd force, downward (kN)"),
         )
     ):
-        upper, lower = axes[0, column], axes[1, column]
-        upper.plot(values / 1e3, depth, color=colour)
-        upper.plot(values[-1] / 1e3, depth[-1], "o", color=colour, markersize=4.0)
+        upper, lower = axes[:, column]
+        for here, x, y in ((upper, values, depth), (lower, turned, values)):
+            here.plot(x[:n], y[:n], color=colour)
+            here.plot(x[n - 1], y[n - 1], "o", color=colour, markersize=4.0)
+            here.plot(x[n - 1 :], y[n - 1 :], ":", color=colour, linewidth=1.1)
+            grid(here)
         upper.set_ylim(*_padded(depth)[::-1])
         upper.set(xlabel=label, ylabel="depth of the tip (m)")
-        lower.plot(turned, values / 1e3, color=colour)
-        lower.plot(turned[-1], values[-1] / 1e3, "o", color=colour, markersize=4.0)
         lower.set(xlabel="rotation (turns)", ylabel=label)
-        for here in (upper, lower):
-            grid(here)
         upper.axvline(0.0, color=MUTED, linewidth=0.8)
         lower.axhline(0.0, color=MUTED, linewidth=0.8)
     return figure
@@ -132,7 +135,7 @@ def _draw_bars(axes: Any, parts: list[PartTorque]) -> None:
     axes.set_yticks(place, [part.name for part in parts])
     axes.set(xlabel="torque (kN m)", title="at the end, part by part")
     axes.axvline(0.0, color=INK, linewidth=0.7)
-    axes.legend(loc="lower right", fontsize=7.5)
+    axes.legend(loc="lower right", fontsize=7.5).set_gid("bar_legend")  # ids are unique in a page
     grid(axes, "x")
 
 

@@ -15,7 +15,7 @@ from workflows.report_tables import group_row, option_rows, spaced
 from workflows.report_units import shown, significant
 from workflows.screw_case import ScrewCase
 from workflows.screw_report_curves import balance_error, turns
-from workflows.screw_theory import PartTorque
+from workflows.screw_theory import PartTorque, driven
 
 Row = list[str | Cell]
 
@@ -27,37 +27,61 @@ def whole(value: float | None, unit: str = "", digits: int = 4) -> str:
 
 def summary_table(case: ScrewCase, installed: InstalledState) -> str:
     """Return the figures by which an installation is judged."""
-    history: ScrewHistory = installed.history
-    n_points, n_start = len(installed.material_points.mass), _points_at_start(installed)
-    moved = history.travel > 0.0
-    work, error = float(history.rig_work.sum()), balance_of(history)
+    history = driven(installed.history)
     rows: list[Row] = [
-        _group("at the end"),
-        ["depth of the tip", number(whole(float(installed.pile.tip_depth), "m", 3))],
+        _group("when the rig stops"),
+        ["depth of the tip",
+         number(whole(case.pile.embedment + float(history.penetration[-1]), "m", 3))],
         ["rotation", number(f"{significant(float(turns(case.pile, history)[-1]), 3)} turns")],
         ["torque", number(whole(float(history.torque[-1]), "N m"))],
         ["crowd force, downward", number(whole(float(history.crowd_force[-1]), "N"))],
+        *_release_rows(case, installed),
         _group("largest on the way"),
         ["torque", number(whole(float(history.torque.max()), "N m"))],
         ["crowd force", number(whole(float(history.crowd_force.max()), "N"))],
         ["lateral force", number(whole(_largest(history.lateral_force), "N"))],
         ["overturning moment", number(whole(_largest(history.overturning_moment), "N m"))],
-        _group("checks"),
-        ["work of the rig", number(whole(work, "J"))],
-        ["error of the power balance, all steps", number(whole(error, "", 2))],
-        ["error of the power balance, worst step",
-         number(whole(float(balance_error(history)[moved].max(initial=0.0)), "", 2))],
-        ["torque on the pile against the supports, worst step",
-         number(whole(float(history.far_torque_mismatch[moved].max(initial=0.0)), "", 2))],
-        ["force on the pile against the supports, worst step",
-         number(whole(float(history.far_force_mismatch.max()), "", 2))],
-        ["volume ratio J of the material points",
-         number(f"{history.smallest_volume_ratio.min():.3f} to "
-                f"{history.largest_volume_ratio.max():.3f}")],
-        ["material points", number(f"{n_points}, {n_points / n_start:.2f} of those at the start")],
-        ["cells", number(str(len(installed.background_mesh.cell_nodes)))],
+        *_check_rows(installed, history),
     ]  # fmt: skip
     return table([], rows)
+
+
+def _release_rows(case: ScrewCase, installed: InstalledState) -> list[Row]:
+    """Return how the pile moved when the rig let go; nothing if it did not."""
+    history: ScrewHistory = installed.history
+    last = int((history.release_share == 0.0).sum()) - 1
+    if last == len(history.travel) - 1:
+        return []
+    rise = 1e3 * float(history.penetration[last] - history.penetration[-1])
+    back = 360.0 * float(np.diff(turns(case.pile, history)[[-1, last]])[0])
+    return [
+        _group("when the rig has let go"),
+        ["pile has come up", number(f"{significant(rise, 3)} mm")],
+        ["pile has turned back", number(f"{significant(back, 3)} °")],
+        ["torque that is left", number(whole(float(history.torque[-1]), "N m", 2))],
+        ["crowd force that is left", number(whole(float(history.crowd_force[-1]), "N", 2))],
+    ]
+
+
+def _check_rows(installed: InstalledState, history: ScrewHistory) -> list[Row]:
+    """Return what tells whether the figures can be trusted, over the driven steps."""
+    n_points, n_start = len(installed.material_points.mass), _points_at_start(installed)
+    moved = history.travel > 0.0
+    low, high = history.smallest_volume_ratio.min(), history.largest_volume_ratio.max()
+    worst = float(balance_error(history)[moved].max(initial=0.0))
+    torque = float(history.far_torque_mismatch[moved].max(initial=0.0))
+    force = float(history.far_force_mismatch.max())
+    return [
+        _group("checks"),
+        ["work of the rig", number(whole(float(history.rig_work.sum()), "J"))],
+        ["error of the power balance, all steps", number(whole(balance_of(history), "", 2))],
+        ["error of the power balance, worst step", number(whole(worst, "", 2))],
+        ["torque on the pile against the supports, worst step", number(whole(torque, "", 2))],
+        ["force on the pile against the supports, worst step", number(whole(force, "", 2))],
+        ["volume ratio J of the material points", number(f"{low:.3f} to {high:.3f}")],
+        ["material points", number(f"{n_points}, {n_points / n_start:.2f} of those at the start")],
+        ["cells", number(str(len(installed.background_mesh.cell_nodes)))],
+    ]
 
 
 def balance_of(history: ScrewHistory) -> float:
@@ -91,11 +115,11 @@ def part_table(parts: list[PartTorque], total: float) -> str:
         both = part.tangential + part.normal
         rows.append([
             part.name,
-            number(whole(part.tangential, "N m")),
-            number(whole(part.closed_form, "N m")),
+            number(whole(part.tangential, "N m", 3)),
+            number(whole(part.closed_form, "N m", 3)),
             number("–" if deviation is None else _percent(deviation, signed=True)),
-            number(whole(part.normal, "N m")),
-            number(whole(both, "N m")),
+            number(whole(part.normal, "N m", 3)),
+            number(whole(both, "N m", 3)),
             number(_percent(both / total) if total else "–"),
         ])  # fmt: skip
     with_form = [part for part in parts if part.closed_form is not None]
@@ -104,11 +128,11 @@ def part_table(parts: list[PartTorque], total: float) -> str:
     compared = sum(part.tangential for part in with_form)
     rows.append([
         Cell("<b>sum</b>"),
-        number(whole(along, "N m")),
-        number(whole(form if with_form else None, "N m")),
+        number(whole(along, "N m", 3)),
+        number(whole(form if with_form else None, "N m", 3)),
         number(_percent(compared / form - 1.0, signed=True) if form else "–"),
-        number(whole(across, "N m")),
-        number(whole(along + across, "N m")),
+        number(whole(across, "N m", 3)),
+        number(whole(along + across, "N m", 3)),
         "",
     ])  # fmt: skip
     return table(head, rows)
@@ -149,3 +173,16 @@ def case_tables(case: ScrewCase) -> str:
         if is_dataclass(getattr(case, section.name))
     )
     return f'<div class="columns">{tables}</div>'
+
+
+def time_table(seconds: dict[str, float], n_steps: int) -> str:
+    """Return where the time of the installation went, in all and for each step."""
+    total = sum(seconds.values()) or 1.0
+    rows: list[Row] = [
+        [phase, number(f"{value:.1f} s"), number(f"{1e3 * value / n_steps:.0f} ms"),
+         number(_percent(value / total))]
+        for phase, value in seconds.items()
+    ]  # fmt: skip
+    rows.append([Cell("<b>sum</b>"), number(f"{total:.1f} s"),
+                 number(f"{1e3 * total / n_steps:.0f} ms"), ""])  # fmt: skip
+    return table(["", number("time"), number("per step"), number("share")], rows)

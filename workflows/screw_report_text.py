@@ -5,11 +5,13 @@ from __future__ import annotations
 CAPTIONS = {
     "torque": """Torque and crowd force that the rig applies. The torque is positive in the sense
         that drives the pile down, the crowd force downward: where it is negative the rig has to
-        hold the pile back. The weight of the pile in the ground helps the rig and is deducted.""",
+        hold the pile back. The weight of the pile in the ground helps the rig and is deducted.
+        Dot: the rig stops; dotted: it lets go.""",
     "parts": """Where the torque comes from. Left: traction along the surface (adhesion or
         friction). Middle: normal traction, which turns the pile wherever the surface does not run
         round the axis: pressure ahead of the leading edge, behind the trailing edge, on the slope
-        of the faces. Right: the last step, with the closed forms of full slip.""",
+        of the faces. Right: the last step before the rig lets go, with the closed forms of full
+        slip.""",
     "work": """Where the work of the rig goes. What rig, slip, soil and weight exchange in each step
         must cancel; the right picture shows what is left over.""",
     "side": """Horizontal force and overturning moment of the soil on the pile. A plate of one turn
@@ -20,10 +22,10 @@ CAPTIONS = {
         the picture. Right: change of mean pressure against the undisturbed ground, compression
         positive. Every place shows its nearest material point.""",
     "horizontal": """The same in the level plane through the middle of the lowest plate.""",
-    "tractions": """The pile as the soil feels it: contact pressure (compression positive) and shear
-        traction on its surface, from above and from below. Dark lines are the edges of the parts.
-        Pressures beyond the ends of the scale, at the edges of the plates, have its last
-        colours.""",
+    "tractions": """The pile at the end as the soil feels it, mean of each facet: contact pressure
+        (compression positive) and shear traction on its surface, from above and from below. Dark
+        lines are the edges of the parts. Pressures beyond the ends of the scale, at the edges of
+        the plates, have its last colours.""",
     "animation": """The installation: displacement since the start and change of mean pressure in
         the vertical slice through the axis, and contact pressure on the pile.""",
     "newton": """Newton's method. Left: relative out-of-balance force of every step. Middle: order
@@ -49,6 +51,9 @@ there is no closed form.{friction}</p>
 FRICTION_NOTE = """ This interface has friction: its shear limit is taken from the computed mean
 contact pressure of each part, so only the distribution of the traction is checked, not its
 size."""
+
+TIME_NOTE = """<p>Wall time of the parts of the method in the run that finished the installation;
+what came before a restart is not in it.</p>"""
 
 METHOD = """
 <h3>How the figures were found</h3>

@@ -117,10 +117,10 @@ class TractionField(NamedTuple):
 
 
 def traction_fields(surface: PileSurface) -> tuple[TractionField, TractionField]:
-    """Return contact pressure and shear traction."""
+    """Return contact pressure and shear traction, the mean of each facet."""
     is_buried = surface.corners[:, :, 2].mean(axis=1) < 0.0
     pressure, shear = (
-        np.where(is_buried[:, None], values / 1e3, np.nan)
+        np.where(is_buried, values.mean(axis=1) / 1e3, np.nan)[:, None].repeat(3, axis=1)
         for values in (surface.pressure, surface.shear)
     )
     known = np.clip(pressure[is_buried], *_usual_range(surface, pressure, is_buried))

@@ -32,6 +32,7 @@ from install_mpm.screw_pile import (
 )
 from install_mpm.screw_record import plate_volume
 from install_mpm.state_file import InstalledState
+from workflows.screw_frames import PileSurface
 from workflows.verification.references.screw_pile import helix_resistance, shaft_resistance
 
 LEAST_ROTATION = 1e-3
@@ -71,8 +72,14 @@ class Motion(NamedTuple):
         return 2.0 * np.pi * self.advance / self.turn
 
 
+def driven(history: ScrewHistory) -> ScrewHistory:
+    """Return the history of the steps in which the rig drove the pile, before it let go."""
+    is_driven = history.release_share == 0.0
+    return ScrewHistory(*(values[is_driven] for values in history))
+
+
 def last_motion(pile: ScrewPile, history: ScrewHistory) -> Motion:
-    """Return the motion of the last step; none after the first."""
+    """Return the motion of the last step of ``history``; none if it has only the first."""
     if len(history.travel) < 2:
         return Motion(0.0, 0.0)
     return Motion(
@@ -81,32 +88,43 @@ def last_motion(pile: ScrewPile, history: ScrewHistory) -> Motion:
     )
 
 
-def part_torques(pile: ScrewPile, installed: InstalledState) -> list[PartTorque]:
-    """Return computed torque and closed form of every part that the pile has."""
-    history: ScrewHistory = installed.history
-    motion = last_motion(pile, history)
-    forms = _closed_forms(pile, installed, motion)
-    area = np.bincount(installed.interface.part, installed.interface.area, len(part_names(pile)))
+def part_torques(
+    pile: ScrewPile, installed: InstalledState, surface: PileSurface | None
+) -> list[PartTorque]:
+    """Return torque and closed form of every part of the pile in the last step it was driven.
+
+    ``surface`` is the pile surface in that step; with friction there is no closed form without it.
+    """
+    history, interface = driven(installed.history), installed.interface
+    n_parts = len(part_names(pile))
+    forms = {}
+    if surface is not None or not has_friction(interface):
+        pressure = None if surface is None else surface.pressure.ravel()
+        tau = shear_limits(interface, pressure, n_parts)
+        depth = pile.embedment + float(history.penetration[-1])
+        forms = closed_forms(pile, depth, last_motion(pile, history), tau)
+    area = np.bincount(interface.part, interface.area, n_parts)
+    tangential = history.part_torque[-1] - history.part_normal_torque[-1]
+    normal = history.part_normal_torque[-1]
     return [
-        PartTorque(
-            name,
-            float(history.part_torque[-1, number] - history.part_normal_torque[-1, number]),
-            float(history.part_normal_torque[-1, number]),
-            forms.get(number),
-        )
+        PartTorque(name, float(tangential[number]), float(normal[number]), forms.get(number))
         for number, name in enumerate(part_names(pile))
         if area[number] > 0.0
     ]
 
 
-def _closed_forms(pile: ScrewPile, installed: InstalledState, motion: Motion) -> dict[int, float]:
-    """Return the closed forms in N m by part; none for a pile that does not turn."""
+def closed_forms(
+    pile: ScrewPile, depth: float, motion: Motion, tau: np.ndarray
+) -> dict[int, float]:
+    """Return the closed forms in N m by part; none for a pile that does not turn.
+
+    ``depth`` of the tip in m, ``tau`` (n_parts,) mean shear limit of each part in Pa.
+    """
     if abs(motion.turn) * pile.shaft_radius <= LEAST_ROTATION * abs(motion.advance):
         return {}
     if motion.turn == 0.0:
         return {}
-    tau = shear_limits(installed.interface, len(part_names(pile)))
-    a, depth = pile.shaft_radius, float(installed.pile.tip_depth)
+    a = pile.shaft_radius
     disc = helix_resistance(
         helix_diameter=2.0 * a, shaft_diameter=0.0, pitch=0.0, shear_strength=tau[FLAT_TIP]
     )
@@ -116,20 +134,28 @@ def _closed_forms(pile: ScrewPile, installed: InstalledState, motion: Motion) ->
         SHAFT: _cylinder(a, _free_shaft_length(pile, depth), motion, tau[SHAFT]),
     }
     for number, helix in enumerate(pile.helices):
-        first = first_part(number)
-        for face in (LOWER_FACE, UPPER_FACE):
-            both = helix_resistance(
-                helix_diameter=helix.diameter,
-                shaft_diameter=pile.shaft_diameter,
-                pitch=helix.pitch,
-                shear_strength=tau[first + face],
-                turns=helix.turns,
-            )
-            forms[first + face] = both.torque / 2.0
-        length = mean_thickness(pile, helix) * helix.turns
-        forms[first + RIM] = _cylinder(helix.radius, length, motion, tau[first + RIM])
+        forms |= _plate_forms(pile, helix, first_part(number), motion, tau)
     sense = float(np.sign(motion.turn))
     return {part: sense * torque for part, torque in forms.items()}
+
+
+def _plate_forms(
+    pile: ScrewPile, helix: Helix, first: int, motion: Motion, tau: np.ndarray
+) -> dict[int, float]:
+    """Return the closed forms in N m of faces (PC1) and rim of a plate, without their sense."""
+    forms = {}
+    for face in (LOWER_FACE, UPPER_FACE):
+        both = helix_resistance(
+            helix_diameter=helix.diameter,
+            shaft_diameter=pile.shaft_diameter,
+            pitch=helix.pitch,
+            shear_strength=tau[first + face],
+            turns=helix.turns,
+        )
+        forms[first + face] = both.torque / 2.0
+    length = mean_thickness(pile, helix) * helix.turns
+    forms[first + RIM] = _cylinder(helix.radius, length, motion, tau[first + RIM])
+    return forms
 
 
 def _cylinder(radius: float, length: float, motion: Motion, tau: float) -> float:
@@ -172,14 +198,16 @@ def _free_shaft_length(pile: ScrewPile, tip_depth: float) -> float:
     return tip_depth - pile.tip_length - covered
 
 
-def shear_limits(points: InterfacePoints, n_parts: int) -> np.ndarray:
+def shear_limits(points: InterfacePoints, pressure: np.ndarray | None, n_parts: int) -> np.ndarray:
     """Return the mean shear limit (n_parts,) in Pa of each part below the surface.
 
-    The cohesion of the interface and, with friction, the computed contact pressure times tan(phi).
+    The cohesion of the interface and, with friction, the contact ``pressure`` (n_points,) in Pa
+    times tan(phi).
     """
     area = points.area * points.covered * (points.position[:, 2] < 0.0)
-    pressure = np.maximum(-points.traction[:, 2], 0.0)
-    limit = points.parameters[:, COHESION] + points.parameters[:, TAN_FRICTION] * pressure
+    limit = points.parameters[:, COHESION]
+    if pressure is not None:
+        limit = limit + points.parameters[:, TAN_FRICTION] * np.maximum(pressure, 0.0)
     total = np.bincount(points.part, area * limit, n_parts)
     covered = np.bincount(points.part, area, n_parts)
     mean: np.ndarray = total / np.where(covered > 0.0, covered, 1.0)
