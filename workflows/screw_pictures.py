@@ -50,7 +50,7 @@ def mesh_figure(case: ScrewCase, mesh: BackgroundMesh) -> Figure:
     triangles = mesh.nodes[elements.nodes[:, :3]]
     views = views_of(case.pile, 0.0)
     frames = [frame_around(case.pile, view, 0.0) for view in views]
-    figure, axes = panels(1, 3, 12.0, 5.6, width_ratios=(1.0, 1.0, 1.6))
+    figure, axes = panels(1, 3, 12.0, 5.3, width_ratios=(1.0, 1.0, 1.6))
     for here, view, frame in zip(axes[0], views, frames, strict=False):
         draw_image(here, _facets(triangles, part, view, frame), frame)
     axes[0, 0].set_title(f"pile surface: {len(part)} facets")

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from install_mpm.screw_pile import ScrewPile
 from install_mpm.screw_programme import Pose, rim_radius
 from workflows.report_fields import colour_bar, positive_norm, symmetric_norm
-from workflows.report_style import DIVERGING, PILE, SEQUENTIAL, panels
+from workflows.report_style import DIVERGING, INTENSITY, PILE, SEQUENTIAL, panels
 from workflows.screw_frames import PileSurface
 from workflows.screw_view import (
     OVERSAMPLING,
@@ -129,7 +129,7 @@ def traction_fields(surface: PileSurface) -> tuple[TractionField, TractionField]
         TractionField(
             pressure,
             symmetric_norm(known) if is_signed else positive_norm(known),
-            DIVERGING if is_signed else SEQUENTIAL,
+            DIVERGING if is_signed else INTENSITY,
             "contact pressure (kPa)",
             "both" if is_signed else "max",
         ),

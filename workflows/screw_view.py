@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.ndimage import binary_dilation
 
 LIGHT = np.array([-0.45, 0.35, 1.0])
 """Direction to the light: from the left, from above and from the viewer."""
@@ -149,14 +150,13 @@ def feature_edges(raster: Raster, groups: np.ndarray) -> np.ndarray:
     group = np.where(raster.triangle >= 0, groups[raster.triangle], -1)
     jump = DEPTH_STEP * (raster.frame.top - raster.frame.bottom)
     depth = np.where(np.isfinite(raster.depth), raster.depth, -1e30)
-    edges, wider = np.zeros(group.shape, dtype=bool), np.zeros(group.shape, dtype=bool)
+    edges = np.zeros(group.shape, dtype=bool)
     for axis in (0, 1):
-        ahead = np.roll(group, -1, axis), np.roll(depth, -1, axis)
-        changes = (group != ahead[0]) | (np.abs(depth - ahead[1]) > jump)
-        changes[(slice(None),) * axis + (-1,)] = False
-        edges |= changes
-    for shift in range(-EDGE_WIDTH, EDGE_WIDTH + 1):
-        wider |= np.roll(edges, shift, 0) | np.roll(edges, shift, 1)
+        here, ahead = [slice(None)] * 2, [slice(None)] * 2
+        here[axis], ahead[axis] = slice(None, -1), slice(1, None)
+        one, other = tuple(here), tuple(ahead)
+        edges[one] |= (group[one] != group[other]) | (np.abs(depth[one] - depth[other]) > jump)
+    wider: np.ndarray = binary_dilation(edges, iterations=EDGE_WIDTH)
     return wider
 
 
