@@ -2,7 +2,7 @@
 
 An export, not a state file: no computation starts from it.  ``pile_surface.pvd``,
 ``material_points.pvd`` and ``background_mesh.pvd`` hold the stored frames in order; the time of a
-frame is the travel of the rim in m.
+frame is its load step.
 """
 
 from __future__ import annotations
@@ -15,9 +15,11 @@ import meshio
 import numpy as np
 
 from install_mpm.installation import InstallationProgress, Observer
+from install_mpm.screw_programme import total_travel
 from install_mpm.state_file import InstalledState
-from workflows.directory import write_text
+from workflows.directory import FRAMES, SCREW_VIEWS, VIEWS, write_text
 from workflows.export import export_material_points
+from workflows.screw_case import ScrewCase
 from workflows.screw_frames import (
     PileSurface,
     PointCloud,
@@ -27,10 +29,18 @@ from workflows.screw_frames import (
     vertex_mesh,
 )
 
-VIEWS = "paraview"
-FRAMES = f"{VIEWS}/frames"
 SURFACE, POINTS, MESH = "pile_surface", "material_points", "background_mesh"
 SERIES = (SURFACE, POINTS, MESH)
+
+
+FRAMES_OF_A_RUN = 40
+"""About how many frames an installation leaves."""
+
+
+def frame_interval(case: ScrewCase) -> int:
+    """Return after how many load steps a frame is stored."""
+    n_steps = total_travel(case.pile, case.installation) / case.installation.step
+    return max(1, round(n_steps / FRAMES_OF_A_RUN))
 
 
 def frame_writer(directory: Path, every: int) -> Observer:
@@ -60,7 +70,7 @@ def write_frame(directory: Path, state: InstalledState) -> None:
     _write(_frame_path(directory, POINTS, number), _points_mesh(points_near_pile(state)))
     _write(_frame_path(directory, MESH, number), _cells_mesh(state))
     for series in SERIES:
-        _write_list(directory, series, state.history.travel)
+        _write_list(directory, series)
 
 
 def stored_frames(directory: Path) -> list[int]:
@@ -99,9 +109,8 @@ def read_points(directory: Path, number: int) -> PointCloud:
 
 
 def export_screw_pile(directory: Path, installed: InstalledState) -> list[Path]:
-    """Write the state at the end in full into ``directory``/paraview; return the files."""
-    views = directory / VIEWS
-    paths = [views / f"installed_{series}.vtu" for series in SERIES]
+    """Write the state at the end in full into ``directory``; return the files."""
+    paths = [directory / view for view in SCREW_VIEWS]
     _write(paths[0], _surface_mesh(pile_surface(installed.interface)))
     export_material_points(paths[1], installed)
     _write(paths[2], _cells_mesh(installed))
@@ -119,10 +128,10 @@ def _remove_later_frames(directory: Path, number: int) -> None:
             path.unlink()
 
 
-def _write_list(directory: Path, series: str, travel: np.ndarray) -> None:
-    """Write the list of the frames of a series with the travel (n_steps,) in m as time."""
+def _write_list(directory: Path, series: str) -> None:
+    """Write the list of the frames of a series, with the load step as time."""
     rows = [
-        f'<DataSet timestep="{travel[number]:.9g}" '
+        f'<DataSet timestep="{number}" '
         f'file="{_frame_path(Path(), series, number).relative_to(VIEWS).as_posix()}"/>'
         for number in stored_frames(directory)
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from matplotlib.patches import Patch
 
 from install_mpm.background_mesh import BackgroundMesh, cell_quality
 from install_mpm.screw_pile import PARTS_OF_HELIX, PARTS_OF_PILE
+from install_mpm.screw_pile_mesh import generate_screw_mesh
 from install_mpm.screw_programme import rim_radius
 from install_mpm.screw_surface import pile_elements
 from workflows.report_fields import colour_bar
@@ -36,6 +38,13 @@ PART_COLOURS = (
     "#b9c2ca", "#b9c2ca", "#d9dee2", "#e3a18f", "#8fb8d0", "#dfc27d", "#c8553d", "#3d7ea6",
 )  # fmt: skip
 """Of tip, cone, shaft, lower and upper face, rim, leading and trailing edge."""
+
+
+def write_mesh_picture(path: Path, case: ScrewCase) -> None:
+    """Mesh the ground of ``case`` and draw it into the PNG file ``path``."""
+    mesh = generate_screw_mesh(case.pile, case.box, case.background_mesh)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(mesh_picture(case, mesh))
 
 
 def mesh_picture(case: ScrewCase, mesh: BackgroundMesh) -> bytes:

@@ -3,7 +3,9 @@
 import base64
 import io
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
+from pathlib import Path
 
 import meshio
 import numpy as np
@@ -20,28 +22,34 @@ from install_mpm.screw_pile_mesh import generate_screw_mesh
 from install_mpm.screw_programme import Phase, Pose, ScrewProgramme, pose_at
 from install_mpm.screw_setup import geostatic_state, move_mesh, set_up
 from install_mpm.screw_surface import follow, pile_elements
-from install_mpm.state_file import PileState
+from install_mpm.state_file import PileState, write_installed_state
+from workflows import cli
+from workflows.case import CaseError, case_text
+from workflows.directory import INSTALLED, REPORT, TIMING
 from workflows.screw_animation import MOST_BYTES
 from workflows.screw_case import ScrewCase
 from workflows.screw_export import (
     SERIES,
     export_screw_pile,
+    frame_interval,
     frame_writer,
     read_points,
     read_surface,
     stored_frames,
 )
 from workflows.screw_frames import pile_surface, points_near_pile
-from workflows.screw_pictures import mesh_picture, plane_section
+from workflows.screw_pictures import plane_section
 from workflows.screw_report import write_screw_report
 from workflows.screw_report_curves import balance_error
 from workflows.screw_slices import distance_from_pile
 from workflows.screw_theory import Motion, closed_forms, driven, part_torques
 from workflows.screw_view import Frame, feature_edges, project, rasterise, view_from
+from workflows.stages import report as report_stage
 
 STRENGTH, ADHESION = 10e3, 0.5
 HELIX = Helix(diameter=1.0, pitch=0.33, thickness=0.12, height=0.25)
 STEPS = 5
+JACKED = Path(__file__).parents[2] / "cases" / "jacked_pile_clay_quick.toml"
 
 
 @pytest.fixture(scope="module")
@@ -176,8 +184,12 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def page(directory, case, states):
-    (directory / "installation_times.json").write_text('{"kernels": 12.0, "assembly": 3.0}')
-    return Page(write_screw_report(directory, case, states[-1]).read_text(encoding="utf-8"))
+    (directory / TIMING).write_text('{"kernels": 12.0, "assembly": 3.0}')
+    installed = states[-1]._replace(case_text=case_text(case))
+    write_installed_state(directory / INSTALLED, installed, "test")
+    (remark,) = report_stage.run(case, directory)
+    assert remark == f"open {directory / REPORT}"
+    return Page((directory / REPORT).read_text(encoding="utf-8"))
 
 
 def pictures_of(page, kind):
@@ -358,13 +370,22 @@ def test_the_nearer_triangle_hides_the_other():
     assert not edges[40, 40]
 
 
-def test_the_picture_of_the_mesh_is_not_blank(case, mesh):
-    picture = Image.open(io.BytesIO(mesh_picture(case, mesh)))
+def test_check_draws_the_mesh(case, tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(case_text(case))
+    cli.check(path, plot=tmp_path / "pictures" / "mesh.png")
+    picture = Image.open(tmp_path / "pictures" / "mesh.png")
     assert picture.format == "PNG"
     pixels = np.asarray(picture.convert("RGB"), dtype=float)
     assert (pixels.std(axis=(0, 1)) > 20.0).all()
     for third in np.array_split(pixels, 3, axis=1):
         assert third.std() > 10.0
+
+
+def test_check_draws_screw_piles_only(tmp_path):
+    with pytest.raises(CaseError, match="screw pile only"):
+        cli.check(JACKED, plot=tmp_path / "mesh.png")
+    assert not list(tmp_path.iterdir())
 
 
 # --- frames ---------------------------------------------------------------------------------------
@@ -381,11 +402,18 @@ def test_frames_are_read_back(directory, states):
     np.testing.assert_allclose(points.mean_pressure, cloud.mean_pressure, rtol=1e-5, atol=1e-2)
 
 
-def test_lists_of_frames_have_travel_as_time(directory, states):
+def test_a_run_leaves_some_tens_of_frames(case):
+    long = replace(case, installation=ScrewProgramme((Phase("in", 3.0, 1.0),), 0.01))
+    n_steps = 3.0 * np.hypot(np.pi, HELIX.pitch) / 0.01
+    assert 30 < n_steps / frame_interval(long) < 60
+    assert frame_interval(case) == 1
+
+
+def test_lists_of_frames_have_the_load_step_as_time(directory):
     for series in SERIES:
         text = (directory / "paraview" / f"{series}.pvd").read_text()
-        times = [float(time) for time in re.findall(r'timestep="([^"]+)"', text)]
-        np.testing.assert_allclose(times, states[-1].history.travel)
+        times = [int(time) for time in re.findall(r'timestep="([^"]+)"', text)]
+        assert times == list(range(STEPS + 1))
         for name in re.findall(r'file="([^"]+)"', text):
             assert (directory / "paraview" / name).exists()
 
