@@ -61,7 +61,7 @@ def case():
         ScrewPile(0.5, 1.2, (HELIX,), 8e3),
         CoulombInterface(stiffness, stiffness / 10, adhesion_factor=ADHESION),
         Box(width=2.75, depth=3.0, headroom=0.5),
-        ScrewMeshOptions(0.25, 0.45, 0.4, 1.2, 0.05, points_per_direction=1),
+        ScrewMeshOptions(0.25, 0.42, 0.4, 1.2, 0.05, points_per_direction=1),
         ScrewProgramme((Phase("in", 0.2, 1.0),), 0.06),
         Numerics(tolerance=1e-6),
     )
