@@ -25,6 +25,7 @@ from workflows.progress import Advance, no_progress
 from workflows.report_units import FORCE_UNIT
 from workflows.screw_case import ScrewCase
 from workflows.screw_export import frame_interval, frame_writer
+from workflows.screw_theory import driven
 from workflows.state_files import read_checked
 
 
@@ -124,10 +125,14 @@ def _times(directory: Path) -> str:
 
 
 def _torque(installed: InstalledState) -> list[str]:
-    """Return rotation and torque at the end, in one line."""
-    turns = abs(float(installed.pile.rotation)) / (2.0 * np.pi)
-    torque = float(installed.history.torque[-1])
-    return [f"rotation {turns:.3g} turns, torque {torque / 1e3:.2f} kN m"]
+    """Return rotation, torque and crowd force when the rig stopped, in one line."""
+    history = driven(installed.history)
+    turns = abs(float(history.rotation[-1])) / (2.0 * np.pi)
+    torque, force = float(history.torque[-1]), float(history.crowd_force[-1])
+    return [
+        f"rotation {turns:.3g} turns, torque {torque / 1e3:.2f} kN m, "
+        f"crowd force {force / 1e3:.2f} kN when the rig stopped"
+    ]
 
 
 def _renewals(history: History, unit: str) -> list[str]:
