@@ -72,7 +72,7 @@ def solve_newton(
             correction = solve(state.tangent, -state.residual)
         except SingularMatrixError:
             return NewtonResult(x, False, np.array(residuals))
-        x, state = _backtrack(evaluate, x, correction, residuals[-1])
+        x, state = _backtrack(evaluate, x, correction, _norm(state))
         if not state.is_admissible:
             break
         residuals.append(_relative(state))
@@ -81,16 +81,24 @@ def solve_newton(
 
 
 def _relative(state: Evaluation) -> float:
-    return float(np.linalg.norm(state.residual) / state.reference)
+    return _norm(state) / state.reference
+
+
+def _norm(state: Evaluation) -> float:
+    return float(np.linalg.norm(state.residual))
 
 
 def _backtrack(
     evaluate: Callable[[np.ndarray], Evaluation],
     x: np.ndarray,
     correction: np.ndarray,
-    residual: float,
+    norm: float,
 ) -> tuple[np.ndarray, Evaluation]:
-    """Return the first admissible trial that does not increase the residual, else the best."""
+    """Return the first admissible trial that does not increase the residual, else the best.
+
+    Forces are compared, ``norm`` being that of the residual before: what they are measured against
+    changes from trial to trial, and a falling force may be a rising share of it.
+    """
     best: tuple[np.ndarray, Evaluation] | None = None
     for halving in range(BACKTRACKS + 1):
         trial = x + correction * 0.5**halving
@@ -98,9 +106,9 @@ def _backtrack(
         if not state.is_admissible:
             best = best or (trial, state)
             continue
-        if _relative(state) <= GROWTH_ALLOWED * residual:
+        if _norm(state) <= GROWTH_ALLOWED * norm:
             return trial, state
-        if best is None or not best[1].is_admissible or _relative(state) < _relative(best[1]):
+        if best is None or not best[1].is_admissible or _norm(state) < _norm(best[1]):
             best = (trial, state)
     assert best is not None  # the loop above runs at least once
     return best[0], evaluate(best[0])  # what an evaluation leaves behind has to be of this trial
