@@ -18,6 +18,7 @@ MODULES: tuple[str, ...] = (
     "ellipse",
     "annulus_interface",
     "annulus",
+    "ample_beam",
     "ample_collapse",
     "ample_column",
     "reload",
