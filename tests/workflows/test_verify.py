@@ -326,7 +326,17 @@ def test_newton_has_to_be_quadratic():
     statement = newton_statement([(1e-1, 1e-3, 1e-7), linear, (1e-3,)], 1e-12)
     assert (statement.steps, statement.most_iterations) == (3, 2)
     assert (statement.median_order, statement.smallest_order) == pytest.approx((1.5, 1.0))
+    assert statement.quadratic_share == 0.5
     assert "too few" in newton_statement([(1e-3,)], 1e-12).text
+
+
+def test_newton_without_an_order_has_to_solve_at_once():
+    check = Check("", 1.0, 1.0, 0.0, 0.0)
+    straight, slow = (1e-1, 1e-13, 1e-14), (1e-13, 1e-13, 1e-13, 1e-14)
+    assert outcome_of(check, histories=(straight,)).is_met
+    assert not outcome_of(check, histories=(straight, slow)).is_met
+    assert "Newton" in outcome_of(check, histories=(straight,)).checks[-1].quantity
+    assert len(outcome_of(check).checks) == 1
 
 
 def test_identifiers_are_unique_and_in_natural_order():
