@@ -16,7 +16,7 @@ from handoff.geostatic import VERTICAL, elastic_strain_of
 from handoff.tensor_arrays import six_vectors, tensors_of
 from install_mpm.constitutive import coulomb_interface, dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
-from install_mpm.ground import Ground, undrained_shear_strength
+from install_mpm.ground import GroundProfile, soils_of, undrained_shear_strength
 
 
 class YieldCorrections(NamedTuple):
@@ -31,7 +31,10 @@ class YieldCorrections(NamedTuple):
 
 
 def admissible_state(
-    ground: Ground, interface: CoulombInterface, interface_positions: np.ndarray, state: FEState
+    ground: GroundProfile,
+    interface: CoulombInterface,
+    interface_positions: np.ndarray,
+    state: FEState,
 ) -> tuple[FEState, YieldCorrections]:
     """Return the state with every stress inside its yield surface and every traction its limit.
 
@@ -57,17 +60,19 @@ def admissible_state(
 
 
 def _returned(
-    ground: Ground, state: FEState, outside: np.ndarray
+    ground: GroundProfile, state: FEState, outside: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return stress (n, 6), elastic strain (n, 6) and state variables on the yield surface."""
     material = state.material[outside]
-    trial = six_vectors(elastic_strain_of(ground, material, state.cauchy_stress[outside]))
     variables = state.state_variables[outside]
+    trial = six_vectors(
+        elastic_strain_of(ground, material, state.cauchy_stress[outside], variables)
+    )
     count, status = len(outside), np.zeros(len(outside), dtype=np.int64)
     stress, strain, new_variables = np.empty((count, 6)), np.empty((count, 6)), variables.copy()
     tangent = np.empty((count, 6, 6))
     dispatch.update_all(
-        dispatch.pack([ground.soil]),
+        dispatch.pack(soils_of(ground)),
         material,
         trial,
         variables,
@@ -93,11 +98,11 @@ def _with_rows(array: np.ndarray, rows: np.ndarray, values: np.ndarray) -> np.nd
     return copy
 
 
-def yield_values(ground: Ground, state: FEState) -> np.ndarray:
+def yield_values(ground: GroundProfile, state: FEState) -> np.ndarray:
     """Return the yield function (n_q,) in Pa of the state; zero or negative is admissible."""
     values = np.empty(len(state.material))
     dispatch.yield_function_all(
-        dispatch.pack([ground.soil]),
+        dispatch.pack(soils_of(ground)),
         state.material,
         six_vectors(state.cauchy_stress),
         np.ascontiguousarray(state.state_variables),
@@ -107,7 +112,7 @@ def yield_values(ground: Ground, state: FEState) -> np.ndarray:
 
 
 def admissible_traction(
-    ground: Ground, interface: CoulombInterface, positions: np.ndarray, traction: np.ndarray
+    ground: GroundProfile, interface: CoulombInterface, positions: np.ndarray, traction: np.ndarray
 ) -> np.ndarray:
     """Return the tractions (n, 2) at ``positions`` (n, 2), reduced to the slip limit."""
     strength = undrained_shear_strength(ground, positions[:, VERTICAL])

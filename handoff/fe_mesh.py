@@ -7,17 +7,19 @@ and a level surface get the identical mesh.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from handoff.gmsh_triangles import MeshError, triangulate
+from handoff.gmsh_triangles import MeshError, fill_polygons
 from handoff.options import HandoffOptions
 from handoff.surface import SurfaceProfile, height_at
 from install_mpm.options import Box
 from install_mpm.pile import Pile
 from install_mpm.record import Field
+from install_mpm.soil_bands import soil_bands
 
 SHAFT_SIZE = 2.0
 """Edge length along base and shaft, away from the corner, over the one at the corner."""
@@ -63,12 +65,18 @@ class FEMesh(NamedTuple):
 
 
 def make_mesh(
-    pile: Pile, tip_depth: float, box: Box, options: HandoffOptions, surface: SurfaceProfile
+    pile: Pile,
+    tip_depth: float,
+    box: Box,
+    options: HandoffOptions,
+    surface: SurfaceProfile,
+    boundaries: Sequence[float] = (),
 ) -> FEMesh:
     """Return the mesh of the soil around the pile whose tip is ``tip_depth`` m deep.
 
-    Edges are ``size_at_pile`` long at the corner of the pile, twice that along base and shaft and
-    grow to ``size_far``.
+    It conforms to the ``boundaries`` between undisturbed layers, depths in m.  Edges are
+    ``size_at_pile`` long at the corner of the pile, twice that along base and shaft and grow to
+    ``size_far``.
 
     Raises
     ------
@@ -77,8 +85,9 @@ def make_mesh(
         steep for the mesh to follow.
     """
     _check_geometry(pile, tip_depth, box, options)
-    vertices, triangles = triangulate(
-        _outline(pile, tip_depth, box), lambda x, z: _edge_length(x, z, pile, tip_depth, options)
+    vertices, triangles = fill_polygons(
+        _outlines(pile, tip_depth, box, boundaries),
+        lambda x, z: _edge_length(x, z, pile, tip_depth, options),
     )
     cell_nodes, facet_nodes = _quadratic_cells(len(vertices), triangles)
     tags = _facet_tags(vertices[facet_nodes[:, :2]].mean(axis=1), pile, tip_depth, box)
@@ -121,18 +130,14 @@ def _check_geometry(pile: Pile, tip_depth: float, box: Box, options: HandoffOpti
         raise MeshError("handoff.size_far is smaller than handoff.size_at_pile; make it larger")
 
 
-def _outline(pile: Pile, tip_depth: float, box: Box) -> np.ndarray:
-    """Return the corners (6, 2) of the soil, counter-clockwise from the pile's tip on the axis."""
-    return np.array(
-        [
-            (0.0, -tip_depth),
-            (0.0, -box.depth),
-            (box.width, -box.depth),
-            (box.width, 0.0),
-            (pile.half_width, 0.0),
-            (pile.half_width, -tip_depth),
-        ]
-    )
+def _outlines(
+    pile: Pile, tip_depth: float, box: Box, boundaries: Sequence[float]
+) -> list[np.ndarray]:
+    """Return the corners of the soil, anticlockwise; the band with the tip begins at its axis."""
+    tip = np.array([0.0, -tip_depth])
+    bands = soil_bands(pile, tip_depth, box, boundaries)
+    starts = [int(np.argmax((band == tip).all(axis=1))) for band in bands]
+    return [np.roll(band, -start, axis=0) for band, start in zip(bands, starts, strict=True)]
 
 
 def _edge_length(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
+
+from install_mpm.soil_bands import Drawing
 
 OPTIONS = {
     "General.NumThreads": 1.0,
@@ -31,10 +33,17 @@ class MeshError(RuntimeError):
 def triangulate(
     outline: np.ndarray, edge_length: Callable[[float, float], float]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return vertices (n, 2) in m and counter-clockwise triangles (m, 3) int64 that fill a polygon.
+    """Return vertices (n, 2) in m and triangles (m, 3) that fill a polygon; ``fill_polygons``."""
+    return fill_polygons([outline], edge_length)
 
-    ``outline`` (corners, 2) in m is counter-clockwise; ``edge_length(x, z)`` is the wanted length
-    in m.  The same arguments give bit-equal results.
+
+def fill_polygons(
+    outlines: Sequence[np.ndarray], edge_length: Callable[[float, float], float]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return vertices (n, 2) in m and counter-clockwise triangles (m, 3) int64 that fill polygons.
+
+    ``outlines`` (corners, 2) in m are counter-clockwise and share the corners at which they touch;
+    ``edge_length(x, z)`` is the wanted length in m.  The same arguments give bit-equal results.
 
     Raises
     ------
@@ -42,14 +51,10 @@ def triangulate(
         If gmsh cannot be loaded, or fails.
     """
     with _own_model() as gmsh:
-        geometry = gmsh.model.geo
-        corners = [geometry.addPoint(x, z, 0.0) for x, z in outline]
-        lines = [
-            geometry.addLine(start, end)
-            for start, end in zip(corners, corners[1:] + corners[:1], strict=True)
-        ]
-        geometry.addPlaneSurface([geometry.addCurveLoop(lines)])
-        geometry.synchronize()
+        drawing = Drawing(gmsh.model.geo)
+        for outline in outlines:
+            drawing.add_surface(outline)
+        gmsh.model.geo.synchronize()
         gmsh.model.mesh.setSizeCallback(lambda _dim, _tag, x, z, _y, _size: edge_length(x, z))
         try:
             gmsh.model.mesh.generate(2)

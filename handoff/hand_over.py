@@ -21,7 +21,7 @@ from handoff.quality import Certificate, Evidence, as_json, certify
 from handoff.state_transfer import state_map, transfer_state
 from handoff.surface import surface_profile
 from install_mpm.constitutive.parameters import CoulombInterface
-from install_mpm.ground import Ground
+from install_mpm.ground import GroundProfile, boundary_depths
 from install_mpm.options import Box
 from install_mpm.pile import SYMMETRY_FACTOR, Pile, buried_weight
 from install_mpm.state_file import InstalledState
@@ -29,7 +29,7 @@ from install_mpm.state_file import InstalledState
 
 def hand_over(
     installed: InstalledState,
-    ground: Ground,
+    ground: GroundProfile,
     pile: Pile,
     box: Box,
     interface: CoulombInterface,
@@ -55,7 +55,7 @@ def hand_over(
 
     observe("mesh")
     surface = surface_profile(points, pile.half_width, options.size_at_pile)
-    mesh = make_mesh(pile, tip_depth, box, options, surface)
+    mesh = make_mesh(pile, tip_depth, box, options, surface, boundary_depths(ground))
     problem = make_problem(mesh)
 
     observe("transfer")

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from handoff.geostatic import geostatic_traction
-from install_mpm.ground import Ground
+from install_mpm.ground import GroundProfile
 from install_mpm.interface import InterfacePoints
 from install_mpm.pile import SYMMETRY_FACTOR, PilePart, surface_normals, tangent_of
 
@@ -21,7 +21,7 @@ COORDINATE = {PilePart.BASE: 0, PilePart.SHAFT: 1}
 
 
 def transferred_traction(
-    ground: Ground,
+    ground: GroundProfile,
     points: InterfacePoints,
     targets: np.ndarray,
     target_areas: np.ndarray,

@@ -17,7 +17,7 @@ from handoff.options import HandoffOptions
 from handoff.state_transfer import FALLBACK_FROM, StateMap
 from handoff.synthetic import relative_norm, synthetic_errors
 from install_mpm.conventions import GRAVITY
-from install_mpm.ground import Ground
+from install_mpm.ground import GroundProfile, unit_weights
 from install_mpm.material_points import cauchy_stress
 from install_mpm.pile import SYMMETRY_FACTOR, Pile, PilePart
 from install_mpm.state_file import InstalledState
@@ -76,7 +76,7 @@ class Evidence(NamedTuple):
     """What a certificate is made from."""
 
     installed: InstalledState
-    ground: Ground
+    ground: GroundProfile
     pile: Pile
     problem: EquilibriumProblem
     options: HandoffOptions
@@ -232,12 +232,13 @@ def _reaction_figures(evidence: Evidence) -> dict[str, Figure]:
 
 def _volume_figures(evidence: Evidence) -> dict[str, Figure]:
     points = evidence.installed.material_points
-    density = evidence.ground.unit_weight / GRAVITY
-    volume_fe = float(evidence.problem.integration_volumes.sum())
+    density = unit_weights(evidence.ground)[evidence.balanced.material] / GRAVITY
+    volumes_fe = evidence.problem.integration_volumes
+    volume_fe, mass_fe = float(volumes_fe.sum()), float(density @ volumes_fe)
     figures: dict[str, Figure] = {}
     for name, unit, mpm, fe in (
         ("volume", "m^3", float(points.volume.sum()), volume_fe),
-        ("mass", "kg", float(points.mass.sum()), density * volume_fe),
+        ("mass", "kg", float(points.mass.sum()), mass_fe),
     ):
         figures[f"{name}_mpm"] = Figure(mpm, unit, f"{name} of the material points")
         figures[f"{name}_fe"] = Figure(fe, unit, f"{name} of the finite elements")

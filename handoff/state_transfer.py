@@ -8,10 +8,11 @@ import numpy as np
 
 from handoff.equilibration import EquilibriumProblem
 from handoff.fe_state_file import FEState
-from handoff.geostatic import elastic_strain_of, geostatic_state
+from handoff.geostatic import VERTICAL, elastic_strain_of
 from handoff.interface_transfer import transferred_traction
 from handoff.transfer import Obstacle, TransferWeights, least_squares_weights, transferred
-from install_mpm.ground import Ground
+from install_mpm.geostatic import reference_state
+from install_mpm.ground import GroundProfile, material_at
 from install_mpm.material_points import MaterialPoints, cauchy_stress
 from install_mpm.pile import Pile
 from install_mpm.state_file import InstalledState
@@ -49,40 +50,46 @@ def state_map(
     return StateMap(weights, relative_distance, np.clip(share, 0.0, 1.0))
 
 
-def mapped(state_map: StateMap, values: np.ndarray, geostatic: np.ndarray) -> np.ndarray:
-    """Return point ``values`` (p, ...) at the targets, blended with ``geostatic`` (n_q, ...)."""
-    share = state_map.geostatic_share.reshape(-1, *[1] * (values.ndim - 1))
-    blended: np.ndarray = (1.0 - share) * transferred(state_map.weights, values) + share * geostatic
-    return blended
+def mapped(state_map: StateMap, difference: np.ndarray, geostatic: np.ndarray) -> np.ndarray:
+    """Return ``geostatic`` values (n_q, ...) plus the ``difference`` (p, ...) of points to them.
+
+    The difference fades to zero far from every material point.  Undisturbed ground comes out
+    exactly, whatever its layers and however its state varies with the depth.
+    """
+    share = state_map.geostatic_share.reshape(-1, *[1] * (difference.ndim - 1))
+    total: np.ndarray = geostatic + (1.0 - share) * transferred(state_map.weights, difference)
+    return total
 
 
 def transfer_state(
-    installed: InstalledState, ground: Ground, problem: EquilibriumProblem, state_map: StateMap
+    installed: InstalledState,
+    ground: GroundProfile,
+    problem: EquilibriumProblem,
+    state_map: StateMap,
 ) -> FEState:
     """Return the installed state at the points of ``problem``, neither admissible nor balanced yet.
 
-    State variables that no material point has negative stay so: the fit may overshoot.
+    Each target takes the soil of the nearest material point.  Its state variables stay between the
+    least and the greatest of that soil: the fit may overshoot.
 
     Raises
     ------
     ValueError
         If no soil touches a part of the pile.
     """
-    points = installed.material_points
-    geostatic = geostatic_state(
-        ground,
-        problem.integration_positions,
-        problem.interface_positions,
-        problem.interface_normals,
-    )
-    stress = mapped(state_map, cauchy_stress(points), geostatic.cauchy_stress)
-    variables = mapped(state_map, points.state_variables, geostatic.state_variables)
-    floor = np.where((points.state_variables >= 0.0).all(axis=0), 0.0, -np.inf)
-    material = points.material[state_map.weights.nearest]
+    points, height = installed.material_points, problem.integration_positions[:, VERTICAL]
+    is_beside_points = state_map.geostatic_share < 1.0
+    nearest = points.material[state_map.weights.nearest]
+    material = np.where(is_beside_points, nearest, material_at(ground, height))
+    at_points = reference_state(ground, points.material, points.position[:, VERTICAL], VERTICAL)
+    at_targets = reference_state(ground, material, height, VERTICAL)
+    stress = mapped(state_map, cauchy_stress(points) - at_points[0], at_targets[0])
+    variables = mapped(state_map, points.state_variables - at_points[1], at_targets[1])
+    variables = _within_soil(variables, material, points, at_targets[1])
     return FEState(
         cauchy_stress=stress,
-        elastic_strain=elastic_strain_of(ground, material, stress),
-        state_variables=np.maximum(variables, floor),
+        elastic_strain=elastic_strain_of(ground, material, stress, variables),
+        state_variables=variables,
         material=material,
         interface_traction=transferred_traction(
             ground,
@@ -93,3 +100,15 @@ def transfer_state(
         ),
         pile_displacement=np.zeros(2),
     )
+
+
+def _within_soil(
+    variables: np.ndarray, material: np.ndarray, points: MaterialPoints, geostatic: np.ndarray
+) -> np.ndarray:
+    """Return the state variables (n_q, n_state) within what points and undisturbed ground have."""
+    bounded = variables.copy()
+    for row in np.unique(material):
+        here = material == row
+        known = np.vstack([points.state_variables[points.material == row], geostatic[here]])
+        bounded[here] = np.clip(bounded[here], known.min(axis=0), known.max(axis=0))
+    return bounded

@@ -15,17 +15,20 @@ import numpy as np
 
 from handoff.geostatic import VERTICAL
 from handoff.state_transfer import StateMap, mapped
-from install_mpm.ground import Ground, geostatic_stress, undrained_shear_strength
+from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
 from install_mpm.pile import Pile
 
 STRENGTHS = 4.0
 """Amplitude A of the Airy field over the undrained shear strength at the tip."""
 
 
-def airy_stress(ground: Ground, pile: Pile, tip_depth: float, positions: np.ndarray) -> np.ndarray:
+def airy_stress(
+    ground: GroundProfile, pile: Pile, tip_depth: float, positions: np.ndarray
+) -> np.ndarray:
     """Return the self-equilibrated part (n, 3, 3) in Pa of the synthetic field at (n, 2)."""
     strength = undrained_shear_strength(ground, np.array([-tip_depth]))[0]
-    amplitude = STRENGTHS * strength if strength > 0.0 else ground.unit_weight * tip_depth
+    overburden = -geostatic_stress(ground, np.array([-tip_depth]), VERTICAL)[0, VERTICAL, VERTICAL]
+    amplitude = STRENGTHS * strength if strength > 0.0 else overburden
     stress = np.zeros((len(positions), 3, 3))
     below = (positions[:, 1] + tip_depth) / pile.half_width
     for side in (-1.0, 1.0):
@@ -40,7 +43,7 @@ def airy_stress(ground: Ground, pile: Pile, tip_depth: float, positions: np.ndar
 
 
 def synthetic_errors(
-    ground: Ground,
+    ground: GroundProfile,
     pile: Pile,
     tip_depth: float,
     state_map: StateMap,
@@ -53,14 +56,9 @@ def synthetic_errors(
     Both are errors over the norm of the Airy part alone, because the geostatic part, though far
     larger, is mapped exactly.  Near is within one pile width of the pile.
     """
-
-    def field(positions: np.ndarray) -> np.ndarray:
-        geostatic = geostatic_stress(ground, positions[:, VERTICAL], VERTICAL)
-        return geostatic + airy_stress(ground, pile, tip_depth, positions)
-
-    geostatic = geostatic_stress(ground, targets[:, VERTICAL], VERTICAL)
-    error = mapped(state_map, field(point_positions), geostatic) - field(targets)
+    at_points = airy_stress(ground, pile, tip_depth, point_positions)
     reference = airy_stress(ground, pile, tip_depth, targets)
+    error = mapped(state_map, at_points, np.zeros_like(reference)) - reference
     is_near = distance_to_pile(pile, tip_depth, targets) <= 2.0 * pile.half_width
     return (
         relative_norm(error, reference, volumes),

@@ -16,7 +16,8 @@ from install_mpm.cells import ReferenceCell
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient, StepStart
 from install_mpm.equilibrium import StepEquilibrium
-from install_mpm.injection import inject, merge
+from install_mpm.geostatic import Change, change_with_height, geostatic_trace
+from install_mpm.injection import inject, merge, sub_region_of
 from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.kernels import carry as kernels
 from install_mpm.kernels.update import carry_points
@@ -61,27 +62,33 @@ def integration_points(
 ) -> tuple[IntegrationPoints, np.ndarray]:
     """Return the integration points, and which of them hold no material point, (n_cells, n_ip).
 
-    A sub-region without material points takes the mean of its cell.
+    A sub-region takes the soil that fills most of it, and the state of the points of that soil.
+    One without material points takes the mean of its cell.
     """
     shape = geometry.integration_height.shape
     n_state = points.state_variables.shape[1]
+    change = _change_to_integration_points(points, cell, geometry, gradient)
     totals = (
         np.zeros(shape),
+        np.zeros(shape),
+        np.zeros(shape, dtype=np.int64),
         np.zeros(shape),
         np.zeros(shape),
         np.zeros((*shape, 3, 3)),
         np.zeros((*shape, n_state)),
-        np.zeros(shape, dtype=np.int64),
     )
     kernels.sum_sub_regions(
-        fill.point_order, fill.cell_start, points, cell.dim - 1, gradient.strain,
-        cell.integration_coordinates, geometry.integration_height, totals,
+        fill.point_order, fill.cell_start, points, change.strain, change.state_variables,
+        cell.integration_coordinates, len(gradient.strain), totals,
     )  # fmt: skip
-    soil_volume, soil_mass, log_ratio, strain, state, material = totals
+    soil_volume, soil_mass, material, own_volume, *sums = totals
     is_empty = soil_volume == 0.0
-    for total in (log_ratio, strain, state):
-        _mean_of_cell_where_empty(total, soil_volume, is_empty)
-    own_volume = np.where(is_empty, 1.0, soil_volume)
+    _give_empty_the_soil_of_their_cell(material, own_volume, is_empty)
+    for total in sums:
+        _mean_of_cell_where_empty(total, material, own_volume, is_empty)
+    own_volume = np.where(is_empty, 1.0, own_volume)
+    log_ratio, strain, state = sums
+    state = (state / own_volume[:, :, None]).reshape(own_volume.size, n_state)
     share = geometry.integration_volume
     volume = np.where(fill.is_interior[:, None], share, np.minimum(soil_volume, share))
     volume[~fill.is_active] = 0.0
@@ -94,7 +101,7 @@ def integration_points(
         density=_density(soil_mass, soil_volume, is_empty),
         volume_ratio=np.exp(log_ratio / own_volume).ravel(),
         elastic_log_strain=(strain / own_volume[:, :, None, None]).reshape(-1, 3, 3),
-        state_variables=(state / own_volume[:, :, None]).reshape(own_volume.size, n_state),
+        state_variables=_within_bounds(points, material.ravel(), state, gradient),
         material=material.ravel(),
     ), is_empty & fill.is_active[:, None]
 
@@ -119,12 +126,55 @@ def _density(mass: np.ndarray, volume: np.ndarray, is_empty: np.ndarray) -> np.n
     return density
 
 
-def _mean_of_cell_where_empty(total: np.ndarray, volume: np.ndarray, is_empty: np.ndarray) -> None:
-    """Give empty sub-regions of cells with points the volume mean of the cell, in place."""
-    cell_volume = volume.sum(axis=1)
-    incomplete = np.flatnonzero(is_empty.any(axis=1) & (cell_volume > 0.0))
-    for c in incomplete:
-        total[c, is_empty[c]] = total[c].sum(axis=0) / cell_volume[c]
+def _change_to_integration_points(
+    points: MaterialPoints,
+    cell: ReferenceCell,
+    geometry: CellGeometry,
+    gradient: GeostaticGradient,
+) -> Change:
+    """Return what undisturbed ground changes from each material point to its integration point."""
+    return change_with_height(
+        gradient,
+        points.material,
+        points.position[:, -1],
+        geometry.integration_height[points.cell, sub_region_of(points, cell)],
+        cell.dim - 1,
+        points.state_variables.shape[1],
+    )
+
+
+def _within_bounds(
+    points: MaterialPoints, material: np.ndarray, state: np.ndarray, gradient: GeostaticGradient
+) -> np.ndarray:
+    """Return the state variables (n, n_state), those moved in height within all of their soil."""
+    for row in gradient.curved:
+        here, own = material == row, points.state_variables[points.material == row]
+        if len(own):
+            state[here] = np.clip(state[here], own.min(axis=0), own.max(axis=0))
+    return state
+
+
+def _give_empty_the_soil_of_their_cell(
+    material: np.ndarray, own_volume: np.ndarray, is_empty: np.ndarray
+) -> None:
+    """Give empty sub-regions of cells with points the material of most volume, in place."""
+    for c in _incomplete_cells(own_volume, is_empty):
+        material[c, is_empty[c]] = np.argmax(np.bincount(material[c], own_volume[c]))
+
+
+def _mean_of_cell_where_empty(
+    total: np.ndarray, material: np.ndarray, own_volume: np.ndarray, is_empty: np.ndarray
+) -> None:
+    """Give empty sub-regions of cells with points the volume mean of their soil, in place."""
+    for c in _incomplete_cells(own_volume, is_empty):
+        same = ~is_empty[c] & (material[c] == material[c, is_empty[c]][0])
+        total[c, is_empty[c]] = total[c, same].sum(axis=0) / own_volume[c, same].sum()
+
+
+def _incomplete_cells(own_volume: np.ndarray, is_empty: np.ndarray) -> np.ndarray:
+    """Return the cells (n,) of which some sub-regions hold points and others none."""
+    incomplete: np.ndarray = np.flatnonzero(is_empty.any(axis=1) & (own_volume.sum(axis=1) > 0.0))
+    return incomplete
 
 
 def take_state(
@@ -138,10 +188,11 @@ def take_state(
     """Return the material points after the displacement of a step, and whether all are sound."""
     updated = MaterialPoints(*(np.array(field) for field in points))
     status = np.zeros(len(mesh.cell_nodes), dtype=np.int64)
+    trace, trace_gradient = geostatic_trace(gradient, points)
     carry_points(
         model.cell.cell_type, mesh.cell_nodes, mesh.nodes, equilibrium.displacement,
         equilibrium.trial.cell_volume_ratio, fill.point_order, fill.cell_start, points,
-        model.materials, gradient.strain, model.has_mean_dilatation,
+        model.materials, trace, trace_gradient, model.has_mean_dilatation,
         model.kinematics == Kinematics.AXISYMMETRIC, updated, status,
     )  # fmt: skip
     return updated, not status.any()

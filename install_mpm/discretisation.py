@@ -11,6 +11,7 @@ from install_mpm.assembly import SparsityPattern
 from install_mpm.cells import ReferenceCell
 from install_mpm.constitutive.dispatch import Materials
 from install_mpm.conventions import Kinematics
+from install_mpm.ground import GroundProfile
 from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.interface import InterfaceElements
 from install_mpm.linear_solvers import Solve
@@ -58,6 +59,10 @@ class GeostaticGradient(NamedTuple):
     """Elastic strain, (n_materials, 3, 3) in 1/m."""
     stress: np.ndarray
     """Cauchy stress, (n_materials, 3, 3) in Pa/m."""
+    curved: tuple[int, ...] = ()
+    """Rows of the soil table whose strain is not linear in the depth: it follows ``ground``."""
+    ground: GroundProfile | None = None
+    """The undisturbed ground; needed for ``curved`` rows only."""
 
 
 class StepStart(NamedTuple):

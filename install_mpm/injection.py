@@ -11,6 +11,7 @@ from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.cell_fill import CellGeometry
 from install_mpm.cells import ReferenceCell
 from install_mpm.discretisation import GeostaticGradient
+from install_mpm.geostatic import change_with_height
 from install_mpm.integration_points import CellFill
 from install_mpm.material_points import MaterialPoints
 
@@ -32,7 +33,7 @@ def inject(
     if not fill.is_interior.any():
         return points
     occupied = np.zeros(geometry.integration_height.shape, dtype=bool)
-    nearest = _sub_region_of(points, cell)
+    nearest = sub_region_of(points, cell)
     occupied[points.cell, nearest] = True
     split: list[tuple[int, int, int]] = []
     volume = points.volume.copy()
@@ -46,7 +47,7 @@ def inject(
     return _split(points, np.array(split, dtype=np.int64).reshape(-1, 3), mesh, cell, gradient)
 
 
-def _sub_region_of(points: MaterialPoints, cell: ReferenceCell) -> np.ndarray:
+def sub_region_of(points: MaterialPoints, cell: ReferenceCell) -> np.ndarray:
     """Return the integration point (n_points,) whose sub-region holds each material point."""
     difference = points.reference_coordinates[:, None, :] - cell.integration_coordinates
     distance = (difference**2).sum(axis=2) + difference.sum(axis=2) ** 2
@@ -86,8 +87,14 @@ def _split(
         mass[donor] /= 2.0
         xi = cell.integration_coordinates[q]
         place = _position(mesh, cell, c, xi)
-        rise = place[-1] - points.position[donor, -1]
-        row = points.material[donor]
+        change = change_with_height(
+            gradient,
+            points.material[[donor]],
+            points.position[[donor], -1],
+            place[-1:],
+            cell.dim - 1,
+            points.state_variables.shape[1],
+        )
         new = {name: getattr(points, name)[donor] for name in MaterialPoints._fields}
         new |= {
             "position": place,
@@ -95,8 +102,9 @@ def _split(
             "cell": c,
             "volume": volume[donor],
             "mass": mass[donor],
-            "elastic_log_strain": new["elastic_log_strain"] + rise * gradient.strain[row],
-            "kirchhoff_stress": new["kirchhoff_stress"] + rise * gradient.stress[row],
+            "elastic_log_strain": new["elastic_log_strain"] + change.strain[0],
+            "kirchhoff_stress": new["kirchhoff_stress"] + change.stress[0],
+            "state_variables": new["state_variables"] + change.state_variables[0],
         }
         for name, value in new.items():
             added[name].append(value)
@@ -127,7 +135,7 @@ def merge(
         return points
     merged = MaterialPoints(*(np.array(field) for field in points))
     is_left = np.ones(len(points.mass), dtype=bool)
-    region = _sub_region_of(points, cell)
+    region = sub_region_of(points, cell)
     for c in crowded:
         own = fill.point_order[fill.cell_start[c] : fill.cell_start[c + 1]]
         for _ in range(len(own) - most_per_cell):

@@ -12,7 +12,7 @@ from install_mpm.background_mesh import cell_quality
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.equilibrium import Prescribed
-from install_mpm.ground import Ground
+from install_mpm.ground import GroundProfile, boundary_depths
 from install_mpm.history import append
 from install_mpm.installation_setup import ON_BOUNDARY, Installation, geostatic_state, set_up
 from install_mpm.interface import reaction
@@ -54,7 +54,7 @@ Observer = Callable[[InstalledState, InstallationProgress], None]
 
 
 def install(
-    ground: Ground,
+    ground: GroundProfile,
     pile: Pile,
     law: CoulombInterface,
     box: Box,
@@ -81,7 +81,7 @@ def install(
         is not in equilibrium.
     """
     if resume_from is None:
-        mesh = generate_background_mesh(pile, box, mesh_options)
+        mesh = generate_background_mesh(pile, box, mesh_options, boundary_depths(ground))
     else:
         mesh, kinematics = resume_from.background_mesh, resume_from.kinematics
     problem = set_up(ground, pile, law, box, mesh_options, programme, numerics, mesh, kinematics)

@@ -14,12 +14,13 @@ from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient
-from install_mpm.ground import Ground
+from install_mpm.geostatic import geostatic_gradient
+from install_mpm.ground import GroundProfile, soils_of
 from install_mpm.history import empty_history
 from install_mpm.linear_solvers import SOLVERS
 from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
 from install_mpm.pile import Pile
-from install_mpm.seeding import geostatic_gradient, seed_points
+from install_mpm.seeding import seed_points
 from install_mpm.state_file import InstalledState, PileState, StepControl
 
 ON_BOUNDARY = 1e-9
@@ -29,7 +30,7 @@ ON_BOUNDARY = 1e-9
 class Installation(NamedTuple):
     """The problem: everything that does not change while the pile goes down."""
 
-    ground: Ground
+    ground: GroundProfile
     pile: Pile
     law: CoulombInterface
     box: Box
@@ -43,7 +44,7 @@ class Installation(NamedTuple):
 
 
 def set_up(
-    ground: Ground,
+    ground: GroundProfile,
     pile: Pile,
     law: CoulombInterface,
     box: Box,
@@ -59,7 +60,7 @@ def set_up(
     model = Discretisation(
         cell=reference_cell(CellType.TRI6),
         elements=elements,
-        materials=dispatch.pack([ground.soil]),
+        materials=dispatch.pack(soils_of(ground)),
         pattern=pattern,
         solve=SOLVERS[numerics.linear_solver](pattern),
         numerics=numerics,

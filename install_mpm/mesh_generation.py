@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import gmsh
 import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
 from install_mpm.options import BackgroundMeshOptions, Box
 from install_mpm.pile import Pile
+from install_mpm.soil_bands import Drawing, soil_bands
 
 GMSH_TRIANGLE_6 = 9
 FINE_REACH = 1.0
@@ -15,19 +18,20 @@ FINE_REACH = 1.0
 
 
 def generate_background_mesh(
-    pile: Pile, box: Box, options: BackgroundMeshOptions
+    pile: Pile, box: Box, options: BackgroundMeshOptions, boundaries: Sequence[float] = ()
 ) -> BackgroundMesh:
     """Return a mesh of 6-node triangles conforming to the pile and to the level ground surface.
 
-    It covers the ground and the headroom above it, and is finest at the base and along the shaft of
-    the pile.
+    It also conforms to the ``boundaries`` of layers, depths in m, so that geostatic stress, which
+    jumps there or changes its slope, is integrated exactly.  It covers the ground and the headroom
+    above it, and is finest at the base and along the shaft of the pile.
     """
     gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)  # more threads: another mesh in every run
         gmsh.model.add("background")
-        _draw(pile, box)
+        _draw(pile, box, boundaries)
         _set_sizes(pile, options)
         gmsh.model.mesh.generate(2)
         gmsh.model.mesh.setOrder(2)
@@ -36,31 +40,25 @@ def generate_background_mesh(
         gmsh.finalize()
 
 
-def _draw(pile: Pile, box: Box) -> None:
-    """Draw soil and headroom as two surfaces that share the ground line."""
-    geo = gmsh.model.geo
-    corners = [
-        (0.0, -box.depth),
-        (box.width, -box.depth),
-        (box.width, 0.0),
+def _draw(pile: Pile, box: Box, boundaries: Sequence[float]) -> None:
+    """Draw bands of soil and the headroom as surfaces that share their lines."""
+    drawing = Drawing(gmsh.model.geo)
+    bands = soil_bands(pile, pile.embedment, box, boundaries)
+    headroom = [
         (pile.half_width, 0.0),
-        (pile.half_width, -pile.embedment),
-        (0.0, -pile.embedment),
+        (box.width, 0.0),
+        (box.width, box.headroom),
+        (pile.half_width, box.headroom),
     ]
-    points = [geo.addPoint(x, z, 0.0) for x, z in corners]
-    soil_lines = [
-        geo.addLine(start, end) for start, end in zip(points, points[1:] + points[:1], strict=True)
+    for outline in [*bands, np.array(headroom)]:
+        drawing.add_surface(outline)
+    gmsh.model.geo.synchronize()
+    tip, side = (0.0, -pile.embedment), pile.half_width
+    base = [
+        line for ends, line in drawing.lines.items() if tip in ends and ends[0][1] == ends[1][1]
     ]
-    above = [geo.addPoint(x, box.headroom, 0.0) for x in (box.width, pile.half_width)]
-    sides = [
-        geo.addLine(points[2], above[0]),
-        geo.addLine(above[0], above[1]),
-        geo.addLine(above[1], points[3]),
-    ]
-    geo.addPlaneSurface([geo.addCurveLoop(soil_lines)])
-    geo.addPlaneSurface([geo.addCurveLoop([-soil_lines[2], *sides])])
-    geo.synchronize()
-    for name, lines in (("base", [soil_lines[4]]), ("shaft", [soil_lines[3], sides[2]])):
+    shaft = [line for ends, line in drawing.lines.items() if ends[0][0] == side == ends[1][0]]
+    for name, lines in (("base", base), ("shaft", shaft)):
         gmsh.model.setPhysicalName(1, gmsh.model.addPhysicalGroup(1, lines), name)
 
 

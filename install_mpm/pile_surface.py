@@ -8,7 +8,7 @@ from install_mpm.background_mesh import BackgroundMesh, facets_opposite_vertices
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
-from install_mpm.ground import Ground, geostatic_stress, undrained_shear_strength
+from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
 from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule, frames
 from install_mpm.pile import Pile, PilePart, surface_normals
 
@@ -62,7 +62,7 @@ def initial_interface(
     elements: InterfaceElements,
     parts: np.ndarray,
     mesh: BackgroundMesh,
-    ground: Ground,
+    ground: GroundProfile,
     law: CoulombInterface,
     kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> InterfacePoints:
@@ -81,7 +81,9 @@ def initial_interface(
     )
 
 
-def geostatic_traction(ground: Ground, position: np.ndarray, normal: np.ndarray) -> np.ndarray:
+def geostatic_traction(
+    ground: GroundProfile, position: np.ndarray, normal: np.ndarray
+) -> np.ndarray:
     """Return the local traction (n, 2) in Pa of undisturbed ground on surfaces: t = R sigma n."""
     dim = position.shape[1]
     stress = geostatic_stress(ground, position[:, -1], dim - 1)[:, :dim, :dim]
@@ -93,7 +95,7 @@ def follow(
     interface: InterfacePoints,
     elements: InterfaceElements,
     mesh: BackgroundMesh,
-    ground: Ground,
+    ground: GroundProfile,
     law: CoulombInterface,
     kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> InterfacePoints:

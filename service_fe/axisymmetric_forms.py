@@ -128,9 +128,15 @@ class AxisymmetricForms:
         of_cell = force.reshape(-1, 1, N_POINTS * N_COMPONENTS) @ self._operator
         return self._assembled(of_cell)
 
-    def weight(self, unit_weight: float) -> np.ndarray:
-        """Return the nodal forces (node, 2) in N of gravity, for ``unit_weight`` in N/m^3."""
-        return -unit_weight * self._assembled(self._unit_weight)
+    def weight(self, unit_weight: np.ndarray) -> np.ndarray:
+        """Return the nodal forces (node, 2) in N of gravity, ``unit_weight`` (n_q,) in N/m^3.
+
+        A cell weighs the mean over its points.
+        """
+        of_cell = self.integration_volumes.reshape(-1, N_POINTS)
+        weight = unit_weight.reshape(-1, N_POINTS) * of_cell
+        mean = weight.sum(axis=1) / of_cell.sum(axis=1)
+        return -self._assembled(mean[:, None, None] * self._unit_weight)
 
     def stiffness(self, tangent: np.ndarray) -> PETSc.Mat:
         """Return the stiffness in N/m of the tangent (n_q, 6, 6) in Pa.

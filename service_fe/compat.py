@@ -81,7 +81,9 @@ def make_quadrature_space(mesh: Any, shape: tuple[int, ...], degree: int) -> Any
             CELL, value_shape=shape, degree=degree, scheme=SCHEME
         )
         return fem.functionspace(mesh, element)
-    if len(shape) == 1:
+    if len(shape) == 0:
+        element = ufl.FiniteElement("Quadrature", CELL, degree, quad_scheme=SCHEME)
+    elif len(shape) == 1:
         element = ufl.VectorElement("Quadrature", CELL, degree, shape[0], quad_scheme=SCHEME)
     else:
         element = ufl.TensorElement("Quadrature", CELL, degree, shape, quad_scheme=SCHEME)

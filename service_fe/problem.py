@@ -16,7 +16,12 @@ from handoff.tensor_arrays import six_vectors
 from install_mpm.constitutive import coulomb_interface, dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
-from install_mpm.ground import Ground, undrained_shear_strength
+from install_mpm.ground import (
+    GroundProfile,
+    soils_of,
+    undrained_shear_strength,
+    unit_weights,
+)
 from install_mpm.pile import WHOLE_PILE
 from service_fe.interface_forms import InterfaceForms
 from service_fe.kinematics import soil_forms
@@ -70,7 +75,7 @@ class ServiceProblem:
     def __init__(
         self,
         mesh: FEMesh,
-        ground: Ground,
+        ground: GroundProfile,
         interface: CoulombInterface,
         pile_weight: float = 0.0,
         numerics: ServiceNumerics | None = None,
@@ -82,13 +87,12 @@ class ServiceProblem:
         self.numerics = numerics or ServiceNumerics()
         self.whole_body = WHOLE_PILE[kinematics]
         self._interface = InterfaceForms(mesh, kinematics)
-        self.gravity = self._soil.weight(ground.unit_weight)
         strength = undrained_shear_strength(ground, self._interface.positions[:, 1])
         self.model = Model(
             soil=self._soil,
             interface=self._interface,
             solver=TangentSolver(self._soil.matrix, self._soil.row_of_dof),
-            materials=dispatch.pack([ground.soil]),
+            materials=dispatch.pack(soils_of(ground)),
             interface_parameters=coulomb_interface.pack(interface, strength),
             is_fixed=roller_supports(mesh) if is_fixed is None else is_fixed,
             pile_weight=np.array([0.0, -pile_weight, 0.0]),
@@ -139,6 +143,10 @@ class ServiceProblem:
         _, pile_force = self._interface.forces(state.interface_traction)
         return pile_force - self.model.pile_weight
 
+    def gravity(self, state: FEState) -> np.ndarray:
+        """Return the nodal forces (node, 2) in N of the weight of the soils of ``state``."""
+        return self._soil.weight(unit_weights(self.ground)[state.material])
+
     def internal_force(self, state: FEState) -> np.ndarray:
         """Return the nodal forces (node, 2) in N of stress and interface traction of ``state``."""
         soil_force, _ = self._interface.forces(state.interface_traction)
@@ -152,13 +160,13 @@ class ServiceProblem:
         ValueError
             If the soil has no weight.
         """
-        weight = self.ground.unit_weight * self.integration_volumes.sum()
+        weight = unit_weights(self.ground)[state.material] @ self.integration_volumes
         if weight <= 0.0:
             raise ValueError(
                 "the out-of-balance force is measured by the weight of the soil, which is zero;"
                 " give ground.unit_weight"
             )
-        residual = self.gravity - self.internal_force(state)
+        residual = self.gravity(state) - self.internal_force(state)
         return float(np.linalg.norm(residual[~self.model.is_fixed]) / weight)
 
     def release(self, state: FEState, share: float) -> ReleasedState:
@@ -169,7 +177,8 @@ class ServiceProblem:
         EquilibrationError
             If Newton's method does not converge.
         """
-        external = self.gravity - (1.0 - share) * (self.gravity - self.internal_force(state))
+        gravity = self.gravity(state)
+        external = gravity - (1.0 - share) * (gravity - self.internal_force(state))
         try:
             step = self.solve(state, held(), external_force=external)
         except StepNotConvergedError as error:
@@ -209,6 +218,6 @@ class ServiceProblem:
         StepNotConvergedError
             If the tolerance is not reached; ``state`` is still the last accepted one.
         """
-        motion = np.zeros_like(self.gravity) if support_motion is None else support_motion
-        external = self.gravity if external_force is None else external_force
+        motion = np.zeros_like(self.mesh.nodes) if support_motion is None else support_motion
+        external = self.gravity(state) if external_force is None else external_force
         return LoadStep(self.model, state, control, motion, external).solve(guess)

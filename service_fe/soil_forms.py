@@ -86,6 +86,8 @@ class SoilForms:
         self._displacement = fem.Function(self.space)
         self._stress = fem.Function(compat.make_quadrature_space(self.domain, (3,), DEGREE))
         self._tangent = fem.Function(compat.make_quadrature_space(self.domain, (3, 3), DEGREE))
+        self._unit_weight = fem.Function(compat.make_quadrature_space(self.domain, (), DEGREE))
+        self._unit_weight_rows = self._quadrature_rows(self._unit_weight)
         self._stress_rows = self._quadrature_rows(self._stress)
         self._tangent_rows = self._quadrature_rows(self._tangent)
         strain = in_plane_strain(self._displacement)
@@ -94,7 +96,7 @@ class SoilForms:
         self._stiffness_form = fem.form(
             ufl.dot(in_plane_strain(test), ufl.dot(self._tangent, in_plane_strain(trial))) * dx
         )
-        self._weight_form = fem.form(test[1] * dx)
+        self._weight_form = fem.form(self._unit_weight * test[1] * dx)
         self.matrix: PETSc.Mat = compat.make_matrix(self._stiffness_form)
 
     def _quadrature_rows(self, function: Any) -> np.ndarray:
@@ -119,9 +121,10 @@ class SoilForms:
         self._stress.x.array.reshape(-1, 3)[self._stress_rows] = stress[:, IN_PLANE]
         return self._assembled(self._force_form)
 
-    def weight(self, unit_weight: float) -> np.ndarray:
-        """Return the nodal forces (node, 2) in N of gravity, for ``unit_weight`` in N/m^3."""
-        return -unit_weight * self._assembled(self._weight_form)
+    def weight(self, unit_weight: np.ndarray) -> np.ndarray:
+        """Return the nodal forces (node, 2) in N of gravity, ``unit_weight`` (n_q,) in N/m^3."""
+        self._unit_weight.x.array[self._unit_weight_rows] = unit_weight
+        return -self._assembled(self._weight_form)
 
     def stiffness(self, tangent: np.ndarray) -> PETSc.Mat:
         """Return the stiffness in N/m, rows ``row_of_dof``, of the tangent (n_q, 6, 6) in Pa.

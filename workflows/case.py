@@ -11,7 +11,7 @@ from typing import Any
 from handoff.options import HandoffOptions
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
-from install_mpm.ground import Ground
+from install_mpm.ground import GroundProfile
 from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
 from install_mpm.pile import Pile
 from service_fe.options import ServiceOptions
@@ -30,7 +30,7 @@ class Case:
 
     title: str
     """What the results are called; a results directory belongs to one title."""
-    ground: Ground
+    ground: GroundProfile
     pile: Pile
     interface: CoulombInterface
     box: Box

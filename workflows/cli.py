@@ -141,11 +141,50 @@ def check(case: CaseFile, overrides: Overrides = None) -> None:
 
 
 @app.command()
-def template() -> None:
-    """Print a commented case file."""
-    from workflows.template import template_text
+def template(
+    soil: Annotated[
+        str | None,
+        typer.Option("--soil", metavar="LAW", help="A soil law only, with typical values."),
+    ] = None,
+) -> None:
+    """Print a commented case file, or the parameters of a soil law."""
+    if soil is None:
+        from workflows.template import template_text
 
-    sys.stdout.write(template_text())
+        sys.stdout.write(template_text())
+        return
+    from workflows.soil_template import soil_template_text
+
+    sys.stdout.write(soil_template_text(soil))
+
+
+@app.command("element-test")
+def element_test(
+    source: Annotated[
+        str, typer.Argument(metavar="CASE|LAW", help="Case, a file of its ground, or a soil law.")
+    ],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="DIR", help="Where tables and pictures go.")
+    ],
+    layer: Annotated[
+        str | None, typer.Option("--soil", metavar="LAYER", help="Layer; the first by default.")
+    ] = None,
+    tests: Annotated[
+        list[str] | None, typer.Option("--test", metavar="NAME", help="Test; all by default.")
+    ] = None,
+    pressures: Annotated[
+        list[str] | None,
+        typer.Option("--pressure", metavar="STRESS", help="Cell pressure or vertical stress."),
+    ] = None,
+    strain: Annotated[
+        float | None, typer.Option("--strain", help="Largest axial or shear strain.")
+    ] = None,
+    overrides: Overrides = None,
+) -> None:
+    """Drive a soil through laboratory tests; writes tables (CSV) and pictures."""
+    from workflows.element_tests.command import run
+
+    print(run(source, output, layer, tests or (), pressures or (), strain, overrides or ()), end="")
 
 
 @app.command()

@@ -26,12 +26,37 @@ def check(case: Case) -> None:
     CaseError
         Naming the keys, their values and the remedy, at the first contradiction.
     """
+    _check_ground(case)
     _check_geometry(case)
     _check_mesh_sizes(case)
     _check_headroom(case)
     _check_step(case)
     _check_programmes(case)
     _check_solver(case)
+
+
+def _check_ground(case: Case) -> None:
+    from install_mpm.geostatic import first_beyond_strength
+    from install_mpm.ground import strata
+    from install_mpm.soil_strength import has_undrained_shear_strength
+
+    beyond = first_beyond_strength(case.ground, case.box.depth)
+    if beyond is not None:
+        layer, depth = beyond
+        raise CaseError(
+            f"the K0 stress of {layer.name!r} exceeds the strength of its soil "
+            f"({layer.soil.model}) {depth:g} m deep; take k0 nearer to 1 or a stronger soil"
+        )
+    for stratum in strata(case.ground):
+        layer = stratum.layer
+        beside_pile = stratum.top < case.final_tip_depth
+        has_strength = has_undrained_shear_strength(layer.soil)
+        if case.interface.adhesion_factor > 0.0 and beside_pile and not has_strength:
+            raise CaseError(
+                f"interface.adhesion_factor is {case.interface.adhesion_factor:g}, but the soil of "
+                f"{layer.name!r} beside the pile ({layer.soil.model}) has no undrained shear "
+                "strength; give the interface a friction_angle or a cohesion instead"
+            )
 
 
 def _check_geometry(case: Case) -> None:

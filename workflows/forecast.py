@@ -51,10 +51,14 @@ def forecast(case: Case) -> Forecast:
     from handoff.fe_mesh import make_mesh
     from handoff.surface import level_surface
     from install_mpm.cells import CellType, reference_cell, sub_region_points
+    from install_mpm.ground import boundary_depths
     from install_mpm.mesh_generation import generate_background_mesh
 
-    mesh = generate_background_mesh(case.pile, case.box, case.background_mesh)
-    fe_mesh = make_mesh(case.pile, case.final_tip_depth, case.box, case.handoff, level_surface())
+    layers = boundary_depths(case.ground)
+    mesh = generate_background_mesh(case.pile, case.box, case.background_mesh, layers)
+    fe_mesh = make_mesh(
+        case.pile, case.final_tip_depth, case.box, case.handoff, level_surface(), layers
+    )
     heights = mesh.nodes[mesh.cell_nodes[:, :3], 1].mean(axis=1)
     _, shares = sub_region_points(
         reference_cell(CellType.TRI6), case.background_mesh.points_per_direction

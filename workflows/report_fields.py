@@ -13,9 +13,8 @@ from scipy.spatial import cKDTree
 from handoff.fe_mesh import FEMesh
 from handoff.geostatic import VERTICAL
 from handoff.surface import height_at, surface_profile
-from install_mpm.constitutive.parameters import VonMises
-from install_mpm.constitutive.von_mises import STRENGTH
-from install_mpm.ground import Ground, geostatic_stress
+from install_mpm.geostatic import named_state
+from install_mpm.ground import GroundProfile, geostatic_stress
 from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import SYMMETRY_FACTOR
 from workflows.case import Case
@@ -177,7 +176,7 @@ def _round_up(value: float) -> float:
     return float(power * steps[np.searchsorted(steps, value / power * (1.0 - 1e-12))])
 
 
-def pressure_change(ground: Ground, stress: np.ndarray, height: np.ndarray) -> np.ndarray:
+def pressure_change(ground: GroundProfile, stress: np.ndarray, height: np.ndarray) -> np.ndarray:
     """Return the change of mean pressure (n,) in kPa, compression positive."""
     change = stress - geostatic_stress(ground, height, VERTICAL)
     pressure: np.ndarray = -np.trace(change, axis1=1, axis2=2) / 3.0 / 1e3
@@ -199,12 +198,15 @@ class ShearMeasure(NamedTuple):
     limit: float | None
 
 
-def shear_measure(ground: Ground, stress: np.ndarray, state: np.ndarray) -> ShearMeasure:
-    """Return mobilised shear strength (n,), or shear stress in kPa of a soil without strength."""
+def shear_measure(
+    ground: GroundProfile, stress: np.ndarray, material: np.ndarray, state: np.ndarray
+) -> ShearMeasure:
+    """Return mobilised shear strength (n,), or shear stress in kPa if a soil has no strength."""
     shear = deviatoric_stress(stress)
-    if not isinstance(ground.soil, VonMises):
+    strength = named_state(ground, material, state, "undrained_shear_strength")
+    if strength is None:
         return ShearMeasure(shear / 1e3, "shear stress (kPa)", None)
-    return ShearMeasure(shear / state[:, STRENGTH], "mobilised shear strength", 1.0)
+    return ShearMeasure(shear / strength, "mobilised shear strength", 1.0)
 
 
 def initial_position(points: MaterialPoints) -> np.ndarray:

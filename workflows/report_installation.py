@@ -90,7 +90,7 @@ def stresses(case: Case, installed: InstalledState) -> Figure:
     window, points = window_of(case), installed.material_points
     stress = cauchy_stress(points)
     pressure = pressure_change(case.ground, stress, points.position[:, 1])
-    shear = shear_measure(case.ground, stress, points.state_variables)
+    shear = shear_measure(case.ground, stress, points.material, points.state_variables)
     distance = 1e3 * np.linalg.norm(points.displacement, axis=1)
     index, near = nearest_index(points, case, window), is_inside(points, window)
     shear_norm = Normalize(0.0, shear.limit) if shear.limit else positive_norm(shear.values[near])

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from install_mpm.constitutive.parameters import VonMises
-from install_mpm.constitutive.von_mises import PLASTIC_SHEAR
+from install_mpm.geostatic import named_state
+from install_mpm.ground import GroundProfile
 from install_mpm.state_file import InstalledState
 from service_fe.options import Displace, Release
 from service_fe.results import (
@@ -148,10 +148,11 @@ def _draw_shares(axes: Any, curve: Curve, width: float) -> None:
 def mechanism(case: Case, service: ServiceResult, wished: ServiceResult, name: str) -> Figure:
     """Return displacement and plastic shear strain of the programme ``name`` in both models.
 
-    Soil without strength has no plastic strain: the picture then shows the displacement only.
+    Where a soil keeps no plastic strain the picture shows the displacement only.
     """
     models = (service, wished)
-    n_fields = 2 if isinstance(case.ground.soil, VonMises) else 1
+    strains = [plastic_shear(case.ground, model, name) for model in models]
+    n_fields = 2 if strains[0] is not None else 1
     height = picture_height(window_of(case), 4, 11.0) + 0.3
     figure, axes = panels(1, 2 * n_fields, 5.5 * n_fields, height)
     largest = np.concatenate([_distance(model, name) for model in models])
@@ -160,10 +161,10 @@ def mechanism(case: Case, service: ServiceResult, wished: ServiceResult, name: s
         drawn = draw_nodal(here, model.mesh, _distance(model, name), norm, SEQUENTIAL)
         _finish(here, case, MODEL_NAMES[model.model], is_first=here is axes[0, 0])
     colour_bar(figure, drawn, axes[0, :2], f"displacement in {name!r} (mm)", "max")
-    for here, model in zip(axes[0, 2:], models, strict=False):
+    for here, model, strain in zip(axes[0, 2:], models, strains, strict=False):
         cells = sub_regions(model.mesh, model.integration.position)
-        strain = 100.0 * plastic_shear(model, name)
-        drawn = draw_polygons(here, cells, strain, STRAIN_NORM, INTENSITY)
+        assert strain is not None
+        drawn = draw_polygons(here, cells, 100.0 * strain, STRAIN_NORM, INTENSITY)
         _finish(here, case, MODEL_NAMES[model.model], is_first=False)
     if n_fields == 2:
         colour_bar(figure, drawn, axes[0, 2:], f"plastic shear strain in {name!r} (%)", "max")
@@ -183,11 +184,17 @@ def _distance(model: ServiceResult, name: str) -> np.ndarray:
     return distance
 
 
-def plastic_shear(model: ServiceResult, name: str) -> np.ndarray:
-    """Return the plastic shear strain (n_q,) since the release before the programme ``name``."""
-    start = 0.0
+def plastic_shear(ground: GroundProfile, model: ServiceResult, name: str) -> np.ndarray | None:
+    """Return the plastic shear strain (n_q,) since the release before the programme ``name``.
+
+    None if a soil of the ground does not keep it.
+    """
+    start: np.ndarray | float = 0.0
     for result in model.programmes:
-        end = result.state.state_variables[:, PLASTIC_SHEAR]
+        state = result.state
+        end = named_state(ground, state.material, state.state_variables, "plastic_shear_strain")
+        if end is None:
+            return None
         if result.programme.name == name:
             return np.asarray(end - start)
         if isinstance(result.programme, Release):

@@ -41,7 +41,10 @@ def build(record: Any, table: object, key: str = "") -> Any:
     values = {
         name: _value(hints[name], table[name], f"{key}.{name}" if key else name) for name in table
     }
-    return chosen(**values)
+    try:
+        return chosen(**values)
+    except ValueError as error:  # a contradiction between values, told by the dataclass itself
+        raise CaseError(f"{key}: {error}" if key else str(error)) from error
 
 
 def choose(record: Any, table: Mapping[str, Any], key: str) -> type:
@@ -49,14 +52,32 @@ def choose(record: Any, table: Mapping[str, Any], key: str) -> type:
     alternatives = alternatives_of(record)
     if len(alternatives) == 1:
         return alternatives[0]
+    if not any(map(is_tag, hints_of(alternatives[0]).values())):
+        return _one_or_many(alternatives, table)
     tag = tag_of(alternatives[0])
     known = {tag_value(alternative): alternative for alternative in alternatives}
     if tag not in table:
         names = ", ".join(f'"{name}"' for name in known)
         raise CaseError(f"{key}.{tag} is missing; set it to one of {names}")
     if table[tag] not in known:
-        raise CaseError(f"{key}.{tag} is {table[tag]!r}; {_suggestion(str(table[tag]), known)}")
+        raise CaseError(f"{key}.{tag} is {table[tag]!r}; {suggestion(str(table[tag]), known)}")
     return known[table[tag]]
+
+
+def _one_or_many(alternatives: tuple[Any, ...], table: Mapping[str, Any]) -> type:
+    """Return the alternative with a list that the ``table`` has, else the one without lists.
+
+    A thing may be written as one, or as a list of its parts; the list is the tag.
+    """
+    lists = {
+        name: alternative
+        for alternative in alternatives
+        for name, hint in hints_of(alternative).items()
+        if item_type(hint) is not None
+    }
+    meant = [lists[name] for name in table if name in lists]
+    chosen: type = [*meant, *(a for a in alternatives if a not in lists.values())][0]
+    return chosen
 
 
 def _check_keys(record: type, table: Mapping[str, Any], key: str) -> None:
@@ -64,7 +85,7 @@ def _check_keys(record: type, table: Mapping[str, Any], key: str) -> None:
     names = {field.name: field for field in fields(record)}
     for name in table:
         if name not in names:
-            raise CaseError(f"{prefix}{name} is not a known key; {_suggestion(name, names)}")
+            raise CaseError(f"{prefix}{name} is not a known key; {suggestion(name, names)}")
     for name, field in names.items():
         if name not in table and is_required(field):
             hint = hints_of(record)[name]
@@ -82,7 +103,8 @@ def _example(name: str, hint: Any, key: str) -> str:
     return f'{name} = "text"' if hint is str else f"{name} = 1"
 
 
-def _suggestion(name: str, known: Mapping[str, object]) -> str:
+def suggestion(name: str, known: Mapping[str, object]) -> str:
+    """Return what to write in place of ``name``: the nearest of the ``known``, or all of them."""
     nearest = get_close_matches(name, known, n=1, cutoff=0.6)
     if nearest:
         return f'did you mean "{nearest[0]}"?'
@@ -113,7 +135,7 @@ def _checked(hint: Any, value: object, key: str, unit: Unit | None) -> Any:
         return _adapter(hint).validate_python(value)
     except ValidationError as error:
         shown = format_quantity(value, unit) if unit and isinstance(value, float) else repr(value)
-        problem = error.errors()[0]
+        problem = error.errors()[-1 if isinstance(value, str) else 0]  # a union's texts come last
         if problem["type"] in RANGE_ERRORS:
             in_unit = f" {unit.symbol}" if unit else ""
             raise CaseError(
@@ -155,6 +177,8 @@ def unit_of(hint: Any) -> Unit | None:
 
 def range_of(hint: Any) -> str:
     """Return the allowed range in words, e.g. "> 0 and <= 1", or the allowed values."""
+    if get_origin(hint) in (Union, types.UnionType):
+        return " or ".join(filter(None, map(range_of, get_args(hint))))
     signs = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
     limits = [
         f"{sign} {getattr(item, name):g}"

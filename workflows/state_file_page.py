@@ -13,6 +13,7 @@ from types import ModuleType
 from handoff import fe_state_file
 from install_mpm import state_file
 from install_mpm.constitutive.dispatch import MODULE_OF
+from install_mpm.constitutive.state_variables import STATE_VARIABLES
 from install_mpm.conventions import CONVENTIONS
 from install_mpm.record import describe
 from service_fe import result_file
@@ -39,11 +40,14 @@ def state_file_page() -> str:
 
 
 def _state_variables() -> str:
-    """Return one line for each soil law."""
+    """Return the names of each soil law in order, and unit and meaning of every name."""
     lines = []
     for model in MODULE_OF:
         names = (f"`{name}`" for name in MODULE_OF[model].STATE_VARIABLES)
         lines.append(f"- `{model.name.lower()}`: {', '.join(names) or 'none'}")
+    lines += ["", "| state variable | unit | meaning |", "|---|---|---|"]
+    for name, variable in STATE_VARIABLES.items():
+        lines.append(f"| `{name}` | {variable.unit or '-'} | {variable.doc} |")
     return "\n".join(lines)
 
 

@@ -71,9 +71,16 @@ EXAMPLE: dict[str, Any] = {
 def template_text() -> str:
     """Return a commented case file that is valid as it stands."""
     build_record(Case, EXAMPLE)
-    comments: dict[str, tuple[list[str], str]] = {}
-    document = _with_defaults(Case, EXAMPLE, "", comments)
+    document, comments = commented_table(Case, EXAMPLE, "")
     return HEADING + format_toml(document, lambda key: comments.get(key, ([], "")))
+
+
+def commented_table(
+    record: type, example: dict[str, Any], path: str
+) -> tuple[dict[str, Any], dict[str, tuple[list[str], str]]]:
+    """Return ``example`` with the defaults of ``record``, and comments by dotted key."""
+    comments: dict[str, tuple[list[str], str]] = {}
+    return _with_defaults(record, example, path, comments), comments
 
 
 def _with_defaults(
@@ -98,7 +105,7 @@ def _with_defaults(
         else:
             document[name] = value
             behind = "" if is_tag(hint) else _facts(hint, defaults.get(name), name in defaults)
-            comments[key] = (_wrapped(docs.get(name, "")), behind)
+            comments[key] = (wrapped(docs.get(name, "")), behind)
     return document
 
 
@@ -126,8 +133,10 @@ def _section_comment(hint: Any, doc: str) -> list[str]:
     """Return the comment above a table: what it is, and its alternatives if there are several."""
     alternatives = alternatives_of(hint)
     if len(alternatives) == 1:
-        return _wrapped(doc or _first_paragraph(alternatives[0]))
-    lines = [*_wrapped(doc), f"One of the following, told apart by {tag_of(alternatives[0])}:"]
+        return wrapped(doc or _first_paragraph(alternatives[0]))
+    if not any(map(is_tag, hints_of(alternatives[0]).values())):
+        return wrapped(doc or _first_paragraph(alternatives[0])) + _instead(alternatives[1:])
+    lines = [*wrapped(doc), f"One of the following, told apart by {tag_of(alternatives[0])}:"]
     for alternative in alternatives:
         keys = ", ".join(
             name + ("" if is_required(field) else " (optional)")
@@ -140,11 +149,23 @@ def _section_comment(hint: Any, doc: str) -> list[str]:
     return lines
 
 
+def _instead(alternatives: tuple[Any, ...]) -> list[str]:
+    """Return the lines that tell of the other ways to write a table."""
+    return [
+        line
+        for alternative in alternatives
+        for line in wrapped(
+            f"Or: {_first_paragraph(alternative)} Keys: {', '.join(hints_of(alternative))}."
+        )
+    ]
+
+
 def _first_paragraph(record: type) -> str:
     return (inspect.getdoc(record) or "").split("\n\n")[0]
 
 
-def _wrapped(text: str) -> list[str]:
+def wrapped(text: str) -> list[str]:
+    """Return ``text`` as lines of comment."""
     return textwrap.wrap(text.replace("``", ""), WIDTH - 2)
 
 

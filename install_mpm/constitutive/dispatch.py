@@ -13,13 +13,21 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm._jit import jit, parallel_jit, prange
-from install_mpm.constitutive import elastic, neo_hookean, tresca, von_mises
+from install_mpm.constitutive import (
+    drucker_prager,
+    elastic,
+    mohr_coulomb,
+    neo_hookean,
+    tresca,
+    von_mises,
+)
 from install_mpm.constitutive.parameters import (
+    DruckerPrager,
     HenckyElastic,
+    MohrCoulomb,
     NeoHookean,
     SoilParameters,
     Tresca,
-    UndrainedClay,
     VonMises,
 )
 
@@ -31,6 +39,8 @@ class Model(IntEnum):
     VON_MISES = 1
     NEO_HOOKEAN = 2
     TRESCA = 3
+    MOHR_COULOMB = 4
+    DRUCKER_PRAGER = 5
 
 
 MODEL_OF = {
@@ -38,15 +48,20 @@ MODEL_OF = {
     VonMises: Model.VON_MISES,
     NeoHookean: Model.NEO_HOOKEAN,
     Tresca: Model.TRESCA,
+    MohrCoulomb: Model.MOHR_COULOMB,
+    DruckerPrager: Model.DRUCKER_PRAGER,
 }
 MODULE_OF = {
     Model.HENCKY_ELASTIC: elastic,
     Model.VON_MISES: von_mises,
     Model.NEO_HOOKEAN: neo_hookean,
     Model.TRESCA: tresca,
+    Model.MOHR_COULOMB: mohr_coulomb,
+    Model.DRUCKER_PRAGER: drucker_prager,
 }
 _VON_MISES, _NEO_HOOKEAN = int(Model.VON_MISES), int(Model.NEO_HOOKEAN)
 _TRESCA = int(Model.TRESCA)
+_MOHR_COULOMB, _DRUCKER_PRAGER = int(Model.MOHR_COULOMB), int(Model.DRUCKER_PRAGER)
 
 
 class Materials(NamedTuple):
@@ -74,11 +89,24 @@ def state_variable_names(soil: SoilParameters) -> tuple[str, ...]:
     return names
 
 
-def initial_state(soil: SoilParameters, depth: np.ndarray) -> np.ndarray:
-    """Return the state variables (n, n_state) of undisturbed soil at ``depth`` (n,) in m."""
-    if isinstance(soil, UndrainedClay):
-        return von_mises.initial_state(soil, depth)
-    return np.zeros((len(depth), 0))
+def is_linear_elastic(soil: SoilParameters) -> bool:
+    """Return whether stress is linear in the elastic strain, so that geostatic strain is too."""
+    module = MODULE_OF[MODEL_OF[type(soil)]]
+    return module.elastic_strain_from_stress is elastic.elastic_strain_from_stress
+
+
+def initial_state(soil: SoilParameters, depth: np.ndarray, stress: np.ndarray) -> np.ndarray:
+    """Return the state variables (n, n_state) of undisturbed soil.
+
+    Parameters
+    ----------
+    depth
+        Depth (n,) in m below the surface.
+    stress
+        Initial Cauchy stress (n, 3, 3) in Pa, effective if there is pore water.
+    """
+    state: np.ndarray = MODULE_OF[MODEL_OF[type(soil)]].initial_state(soil, depth, stress)
+    return state
 
 
 @jit
@@ -119,18 +147,26 @@ def update_stress(
         return tresca.update_stress(
             trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
         )
+    if model == _MOHR_COULOMB:
+        return mohr_coulomb.update_stress(
+            trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
+        )
+    if model == _DRUCKER_PRAGER:
+        return drucker_prager.update_stress(
+            trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
+        )
     return elastic.update_stress(
         trial_strain, parameters, state_old, stress, elastic_strain, state, tangent
     )
 
 
 @jit
-def elastic_strain_from_stress(model, stress, parameters, elastic_strain):
-    """Fill the elastic strain (6,) of ``stress`` (6,) in Pa."""
+def elastic_strain_from_stress(model, stress, parameters, state, elastic_strain):
+    """Fill the elastic strain (6,) of ``stress`` (6,) in Pa in soil of ``state`` (n_state,)."""
     if model == _NEO_HOOKEAN:
-        neo_hookean.elastic_strain_from_stress(stress, parameters, elastic_strain)
+        neo_hookean.elastic_strain_from_stress(stress, parameters, state, elastic_strain)
         return
-    elastic.elastic_strain_from_stress(stress, parameters, elastic_strain)
+    elastic.elastic_strain_from_stress(stress, parameters, state, elastic_strain)
 
 
 @jit
@@ -140,6 +176,10 @@ def yield_function(model, stress, parameters, state):
         return von_mises.yield_function(stress, parameters, state)
     if model == _TRESCA:
         return tresca.yield_function(stress, parameters, state)
+    if model == _MOHR_COULOMB:
+        return mohr_coulomb.yield_function(stress, parameters, state)
+    if model == _DRUCKER_PRAGER:
+        return drucker_prager.yield_function(stress, parameters, state)
     return elastic.yield_function(stress, parameters, state)
 
 
@@ -167,12 +207,16 @@ def update_all(
 
 
 @parallel_jit
-def elastic_strain_from_stress_all(materials, material, stress, elastic_strain):
-    """Fill ``elastic_strain`` (n, 6) from ``stress`` (n, 6) in Pa at all points."""
+def elastic_strain_from_stress_all(materials, material, stress, state, elastic_strain):
+    """Fill ``elastic_strain`` (n, 6) from ``stress`` (n, 6) in Pa and ``state`` at all points."""
     for p in prange(material.shape[0]):
         row = material[p]
         elastic_strain_from_stress(
-            materials.model[row], stress[p], materials.parameters[row], elastic_strain[p]
+            materials.model[row],
+            stress[p],
+            materials.parameters[row],
+            state[p],
+            elastic_strain[p],
         )
 
 

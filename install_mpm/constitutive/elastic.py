@@ -27,6 +27,11 @@ def pack(parameters: SoilParameters) -> np.ndarray:
     return np.array([bulk, shear])
 
 
+def initial_state(parameters: SoilParameters, depth: np.ndarray, stress: np.ndarray) -> np.ndarray:
+    """Return the state variables, (n, 0): an elastic material has none."""
+    return np.zeros((len(depth), 0))
+
+
 @jit
 def elastic_stress(strain, parameters, stress):
     """Fill ``stress`` (6,) in Pa from the elastic ``strain`` (6,)."""
@@ -51,7 +56,7 @@ def elastic_tangent(parameters, tangent):
 
 
 @jit
-def elastic_strain_from_stress(stress, parameters, elastic_strain):
+def elastic_strain_from_stress(stress, parameters, state, elastic_strain):
     """Fill ``elastic_strain`` (6,), the inverse of ``elastic_stress``."""
     bulk, shear = parameters[BULK], parameters[SHEAR]
     mean_stress = trace(stress) / 3.0

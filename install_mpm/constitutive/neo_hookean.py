@@ -12,7 +12,7 @@ import numpy as np
 
 from install_mpm._jit import jit
 from install_mpm.constitutive.eigen import symmetric_eigen
-from install_mpm.constitutive.elastic import BULK, SHEAR, pack, yield_function
+from install_mpm.constitutive.elastic import BULK, SHEAR, initial_state, pack, yield_function
 from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE, from_mandel
 
 STATE_VARIABLES: tuple[str, ...] = ()
@@ -20,7 +20,7 @@ REPEATED = 1e-7
 """Difference of principal strains below which the divided difference takes its limit."""
 MAX_ITERATIONS = 50
 
-__all__ = ["elastic_strain_from_stress", "pack", "update_stress", "yield_function"]
+__all__ = ["elastic_strain_from_stress", "initial_state", "pack", "update_stress", "yield_function"]
 
 
 @jit
@@ -68,7 +68,7 @@ def _slope(first, second):
 
 
 @jit
-def elastic_strain_from_stress(stress, parameters, elastic_strain):
+def elastic_strain_from_stress(stress, parameters, state, elastic_strain):
     """Fill ``elastic_strain`` (6,), the inverse of the law, by Newton's method on the trace.
 
     NaN where ``stress`` lies beyond what the solid can carry in compression.

@@ -15,6 +15,9 @@ from install_mpm.conventions import Unit
 
 Stiffness = Annotated[float, Unit("Pa"), Gt(0)]
 PoissonsRatio = Annotated[float, Ge(0), Lt(0.5)]
+FrictionAngle = Annotated[float, Unit("rad"), Gt(0), Lt(1.5)]
+DilationAngle = Annotated[float, Unit("rad"), Ge(0), Lt(1.5)]
+VoidRatio = Annotated[float, Gt(0)]
 
 
 @dataclass(frozen=True)
@@ -65,10 +68,73 @@ class Tresca:
     model: Literal["tresca"] = "tresca"
 
 
+@dataclass(frozen=True)
+class MohrCoulomb:
+    """Sand, or any drained soil: Hencky elastic, perfectly plastic at Mohr-Coulomb's criterion.
+
+    The dilation angle psi must not exceed the friction angle phi (equal: associated flow, which
+    limit theorems assume and soil does not follow).  With ``critical_void_ratio``, sin(psi) falls
+    linearly from its value at ``initial_void_ratio`` to zero there, and what has opened at the apex
+    closes before it carries pressure; without, dilation never ends.
+
+    Typical values (Bolton 1986; Lambe and Whitman 1969, tables 3.2 and 11.3): phi 30 to 34 deg in
+    loose and 36 to 45 deg in dense quartz sand, psi about phi - 30 deg, at least 0; c 0 to 1 kPa; E
+    10 to 30 MPa loose, 40 to 80 MPa dense; nu 0.2 to 0.3; e 0.5 dense to 0.9 loose, and at the
+    critical state 0.7 to 0.85 under moderate pressure.
+    """
+
+    youngs_modulus: Stiffness
+    poissons_ratio: PoissonsRatio
+    cohesion: Annotated[float, Unit("Pa"), Ge(0)]
+    friction_angle: FrictionAngle
+    dilation_angle: DilationAngle = 0.0
+    initial_void_ratio: VoidRatio = 0.7
+    critical_void_ratio: Annotated[float | None, Gt(0)] = None
+    model: Literal["mohr_coulomb"] = "mohr_coulomb"
+
+    def __post_init__(self) -> None:
+        _check_flow(self)
+
+
+@dataclass(frozen=True)
+class DruckerPrager:
+    """The same as ``MohrCoulomb`` with a cone in place of the pyramid: smooth but for its apex.
+
+    ``cone`` says where the two agree: in triaxial ``compression`` (the cone around the pyramid), in
+    triaxial ``extension``, in collapse under ``plane_strain``, where they agree for the two angles
+    as they stand, or nowhere outside it (``inner``, the largest cone inside the pyramid).  The
+    compression cone is much too strong in other modes: in extension by a factor of two at 30 deg.
+    """
+
+    youngs_modulus: Stiffness
+    poissons_ratio: PoissonsRatio
+    cohesion: Annotated[float, Unit("Pa"), Ge(0)]
+    friction_angle: FrictionAngle
+    dilation_angle: DilationAngle = 0.0
+    cone: Literal["compression", "extension", "plane_strain", "inner"] = "compression"
+    initial_void_ratio: VoidRatio = 0.7
+    critical_void_ratio: Annotated[float | None, Gt(0)] = None
+    model: Literal["drucker_prager"] = "drucker_prager"
+
+    def __post_init__(self) -> None:
+        _check_flow(self)
+
+
+def _check_flow(soil: MohrCoulomb | DruckerPrager) -> None:
+    if soil.dilation_angle > soil.friction_angle:
+        raise ValueError(
+            f"dilation_angle {soil.dilation_angle:.4g} rad is larger than friction_angle "
+            f"{soil.friction_angle:.4g} rad, which would make energy; lower it"
+        )
+
+
+FrictionalSoil = MohrCoulomb | DruckerPrager
+"""Soil laws with friction, dilation and a void ratio as state."""
+
 UndrainedClay = VonMises | Tresca
 """Soil laws whose strength is ``undrained_shear_strength``, a state variable."""
 
-SoilParameters = HenckyElastic | NeoHookean | VonMises | Tresca
+SoilParameters = HenckyElastic | NeoHookean | VonMises | Tresca | MohrCoulomb | DruckerPrager
 """Every soil law a case can name; ``model`` tells them apart."""
 
 

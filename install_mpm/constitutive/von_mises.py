@@ -34,7 +34,7 @@ def pack(parameters: UndrainedClay) -> np.ndarray:
     return elastic.pack(parameters)
 
 
-def initial_state(parameters: UndrainedClay, depth: np.ndarray) -> np.ndarray:
+def initial_state(parameters: UndrainedClay, depth: np.ndarray, stress: np.ndarray) -> np.ndarray:
     """Return the state variables (n, 2) of material at ``depth`` (n,) in m."""
     strength = (
         parameters.undrained_shear_strength + parameters.undrained_shear_strength_gradient * depth

@@ -32,36 +32,45 @@ def nearest_integration_point(reference_coordinates, integration_coordinates):
 
 @jit
 def sum_sub_regions(
-    point_order, cell_start, points, vertical, strain_gradient, integration_coordinates,
-    integration_height, totals,
+    point_order, cell_start, points, strain_change, state_change, integration_coordinates,
+    n_materials, totals,
 ):  # fmt: skip
     """Add up the material points of every sub-region into ``totals``.
 
-    ``totals`` is a tuple of arrays over (cell, integration point): volume, mass, volume-weighted ln
-    J, elastic strain (3, 3) and state variables, and the material of the largest contribution.  The
-    strain is extrapolated from the point to the integration point with the geostatic gradient
-    ``strain_gradient`` (n_materials, 3, 3) per metre of height, so that geostatic ground is carried
-    without error.
+    ``totals`` is a tuple of arrays over (cell, integration point): volume and mass of all points;
+    the material with the most volume, and of its points alone volume, volume-weighted ln J, elastic
+    strain (3, 3) and state variables.  ``strain_change`` (n_points, 3, 3) and ``state_change``
+    (n_points, n_state) move the state of a point to its integration point, so that geostatic ground
+    is carried without error.
     """
-    volume, mass, log_ratio, strain, state, material = totals
+    volume, mass, material, own_volume, log_ratio, strain, state = totals
+    n_integration_points = integration_coordinates.shape[0]
+    of_material = np.empty((n_integration_points, n_materials))
     for c in range(cell_start.shape[0] - 1):
+        of_material[:, :] = 0.0
         for entry in range(cell_start[c], cell_start[c + 1]):
             p = point_order[entry]
             q = nearest_integration_point(points.reference_coordinates[p], integration_coordinates)
-            weight = points.volume[p]
-            volume[c, q] += weight
+            volume[c, q] += points.volume[p]
             mass[c, q] += points.mass[p]
+            of_material[q, points.material[p]] += points.volume[p]
+        for q in range(n_integration_points):
+            material[c, q] = np.argmax(of_material[q])
+        for entry in range(cell_start[c], cell_start[c + 1]):
+            p = point_order[entry]
+            q = nearest_integration_point(points.reference_coordinates[p], integration_coordinates)
+            if points.material[p] != material[c, q]:
+                continue
+            weight = points.volume[p]
+            own_volume[c, q] += weight
             log_ratio[c, q] += weight * np.log(points.volume_ratio[p])
-            rise = integration_height[c, q] - points.position[p, vertical]
-            row = points.material[p]
             for i in range(3):
                 for j in range(3):
                     strain[c, q, i, j] += weight * (
-                        points.elastic_log_strain[p, i, j] + strain_gradient[row, i, j] * rise
+                        points.elastic_log_strain[p, i, j] + strain_change[p, i, j]
                     )
             for s in range(state.shape[2]):
-                state[c, q, s] += weight * points.state_variables[p, s]
-            material[c, q] = row
+                state[c, q, s] += weight * (points.state_variables[p, s] + state_change[p, s])
 
 
 @jit

@@ -25,16 +25,19 @@ from install_mpm.kernels.gradients import add_hoop_gradient, displacement_gradie
 @parallel_jit
 def carry_points(
     cell_type, cell_nodes, nodes, displacement, cell_volume_ratio, point_order, cell_start,
-    points, materials, strain_gradient, has_mean_dilatation, is_axisymmetric, updated, status,
+    points, materials, geostatic_trace, trace_gradient, has_mean_dilatation, is_axisymmetric,
+    updated, status,
 ):  # fmt: skip
     """Fill ``updated`` (MaterialPoints) with the state after the step.
 
     ``status`` (n_cells,) is 0 where it is sound.
 
     Every point deforms with its own dF, scaled to the volume change of its cell.  The volumetric
-    part of the trial strains of a cell is then replaced by their mean (plus the geostatic
-    gradient), because a pressure that the integration points do not see would otherwise stay with
-    the points for ever.
+    part of the trial strains of the points of one soil in a cell is then replaced by their mean
+    (plus the geostatic difference), because a pressure that the integration points do not see would
+    otherwise stay with the points for ever.  The geostatic volumetric strain of each point is
+    ``geostatic_trace`` (n_points,) where the step starts, and ``trace_gradient`` (n_points,) in 1/m
+    its change with height.
     """
     n_cells = cell_nodes.shape[0]
     for chunk in prange(CHUNKS):
@@ -43,8 +46,8 @@ def carry_points(
             # numba loses writes to the fields of a tuple made in a parallel loop itself
             status[c] = _carry_cell(
                 cell_type, cell_nodes[c], nodes, displacement, cell_volume_ratio[c], point_order,
-                cell_start[c], cell_start[c + 1], points, materials, strain_gradient,
-                has_mean_dilatation, is_axisymmetric, scratch, updated,
+                cell_start[c], cell_start[c + 1], points, materials, geostatic_trace,
+                trace_gradient, has_mean_dilatation, is_axisymmetric, scratch, updated,
             )  # fmt: skip
 
 
@@ -85,7 +88,8 @@ def _make_carry_scratch(n_nodes, dim):
 @jit
 def _carry_cell(
     cell_type, cell_nodes, nodes, displacement, volume_ratio, point_order, first, last, points,
-    materials, strain_gradient, has_mean_dilatation, is_axisymmetric, scratch, updated,
+    materials, geostatic_trace, trace_gradient, has_mean_dilatation, is_axisymmetric, scratch,
+    updated,
 ):  # fmt: skip
     """Move and strain the points of one cell; return 0, or why its points are not sound."""
     n_axes = dilatation_axes(nodes.shape[1], is_axisymmetric)
@@ -120,7 +124,9 @@ def _carry_cell(
         )
         from_mandel(scratch.trial, updated.elastic_log_strain[p])
     if has_mean_dilatation:
-        _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated)
+        _smooth_volumetric_strain(
+            point_order, first, last, points, geostatic_trace, trace_gradient, updated
+        )
     for entry in range(first, last):
         if _return_to_yield_surface(point_order[entry], points, materials, scratch, updated):
             return LAW_FAILED
@@ -139,26 +145,59 @@ def _move_point(p, cell_nodes, displacement, points, values, updated):
 
 
 @jit
-def _smooth_volumetric_strain(point_order, first, last, strain_gradient, updated):
-    """Give all points of a cell its mean volumetric strain, plus the geostatic gradient."""
+def _smooth_volumetric_strain(
+    point_order, first, last, points, geostatic_trace, trace_gradient, updated
+):
+    """Give the points of each soil of a cell their mean volumetric strain.
+
+    What the strain differs from point to point in undisturbed ground is kept.
+    """
+    for entry in range(first, last):
+        row = points.material[point_order[entry]]
+        is_first = True
+        for earlier in range(first, entry):
+            if points.material[point_order[earlier]] == row:
+                is_first = False
+                break
+        if is_first:
+            _smooth_soil(
+                row, point_order, entry, last, points, geostatic_trace, trace_gradient, updated
+            )
+
+
+@jit
+def _smooth_soil(row, point_order, first, last, points, geostatic_trace, trace_gradient, updated):
+    """Give the points of the soil ``row`` among those of a cell their mean volumetric strain."""
     vertical = updated.position.shape[1] - 1
-    volume = mean = height = 0.0
+    volume = mean = undisturbed = 0.0
     for entry in range(first, last):
         p = point_order[entry]
+        if points.material[p] != row:
+            continue
         weight = updated.volume[p]
         strain = updated.elastic_log_strain[p]
         volume += weight
         mean += weight * (strain[0, 0] + strain[1, 1] + strain[2, 2])
-        height += weight * updated.position[p, vertical]
+        undisturbed += weight * _geostatic_trace(
+            p, vertical, points, geostatic_trace, trace_gradient, updated
+        )
     for entry in range(first, last):
         p = point_order[entry]
+        if points.material[p] != row:
+            continue
         strain = updated.elastic_log_strain[p]
-        gradient = strain_gradient[updated.material[p]]
-        slope = gradient[0, 0] + gradient[1, 1] + gradient[2, 2]
-        target = mean / volume + slope * (updated.position[p, vertical] - height / volume)
+        here = _geostatic_trace(p, vertical, points, geostatic_trace, trace_gradient, updated)
+        target = (mean - undisturbed) / volume + here
         correction = (target - strain[0, 0] - strain[1, 1] - strain[2, 2]) / 3.0
         for i in range(3):
             strain[i, i] += correction
+
+
+@jit
+def _geostatic_trace(p, vertical, points, geostatic_trace, trace_gradient, updated):
+    """Return the volumetric strain of undisturbed ground where point ``p`` has moved to."""
+    rise = updated.position[p, vertical] - points.position[p, vertical]
+    return geostatic_trace[p] + trace_gradient[p] * rise
 
 
 @jit

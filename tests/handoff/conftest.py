@@ -57,15 +57,16 @@ def scattered_points(
     volume = np.repeat(cell_areas(mesh) / per_cell, per_cell)
     stress = geostatic_stress(ground, position[:, 1], 1)
     material = np.zeros(len(position), dtype=np.int64)
+    state = dispatch.initial_state(ground.soil, -position[:, 1], stress)
     return MaterialPoints(
         position=position,
         displacement=np.zeros_like(position),
         mass=volume * ground.unit_weight / GRAVITY,
         volume=volume,
         volume_ratio=np.ones(len(position)),
-        elastic_log_strain=elastic_strain_of(ground, material, stress),
+        elastic_log_strain=elastic_strain_of(ground, material, stress, state),
         kirchhoff_stress=stress,
-        state_variables=dispatch.initial_state(ground.soil, -position[:, 1]),
+        state_variables=state,
         material=material,
         cell=material,
         reference_coordinates=shares.reshape(-1, 3)[:, :2],

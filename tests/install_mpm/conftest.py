@@ -12,13 +12,14 @@ from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises
 from install_mpm.equilibrium import Discretisation, Prescribed
-from install_mpm.ground import Ground, geostatic_stress
+from install_mpm.geostatic import geostatic_gradient, undisturbed_state
+from install_mpm.ground import Ground
 from install_mpm.interface import no_interface
 from install_mpm.linear_solvers import superlu
 from install_mpm.material_points import MaterialPoints
 from install_mpm.options import BackgroundMeshOptions, Box, Numerics
 from install_mpm.pile import Pile, PileMotion
-from install_mpm.seeding import elastic_strain_of, geostatic_gradient, seed_points
+from install_mpm.seeding import seed_points
 from install_mpm.step import StepResult, step
 
 Builder = Callable[..., BackgroundMesh]
@@ -182,13 +183,13 @@ class Column:
         corners = self.mesh.nodes[self.mesh.cell_nodes[points.cell, :3]]
         shares = np.column_stack([1.0 - coordinates.sum(axis=1), coordinates])
         position = np.einsum("pv,pvi->pi", shares, corners)
-        stress = geostatic_stress(self.ground, position[:, 1], 1)
+        state = undisturbed_state(self.ground, position[:, 1], 1)
         return points._replace(
             position=position,
             reference_coordinates=coordinates,
-            kirchhoff_stress=stress,
-            elastic_log_strain=elastic_strain_of(self.ground.soil, stress),
-            state_variables=dispatch.initial_state(self.ground.soil, -position[:, 1]),
+            kirchhoff_stress=state.stress,
+            elastic_log_strain=state.elastic_strain,
+            state_variables=state.state_variables,
         )
 
     def step(

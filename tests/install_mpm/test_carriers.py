@@ -8,11 +8,12 @@ from install_mpm.cell_fill import cell_geometry, fill_cells
 from install_mpm.cells import CellType, reference_cell, sub_region_points
 from install_mpm.constitutive import dispatch
 from install_mpm.conventions import GRAVITY, Kinematics
+from install_mpm.geostatic import elastic_strain_of, geostatic_gradient
 from install_mpm.ground import geostatic_stress
 from install_mpm.injection import inject
 from install_mpm.kernels.carry import body_force
 from install_mpm.material_points import MaterialPoints
-from install_mpm.seeding import elastic_strain_of, geostatic_gradient, seed_points
+from install_mpm.seeding import seed_points
 
 CELL = reference_cell(CellType.TRI6)
 THRESHOLD = 0.3
@@ -29,15 +30,16 @@ def points_at(mesh, ground, cells, coordinates, volume):
     shares = np.column_stack([1.0 - coordinates.sum(axis=1), coordinates])
     position = np.einsum("pv,pvi->pi", shares, corners)
     stress = geostatic_stress(ground, position[:, 1], 1)
+    state = dispatch.initial_state(ground.soil, -position[:, 1], stress)
     return MaterialPoints(
         position=position,
         displacement=np.zeros_like(position),
         mass=volume * ground.unit_weight / GRAVITY,
         volume=volume,
         volume_ratio=np.ones(len(position)),
-        elastic_log_strain=elastic_strain_of(ground.soil, stress),
+        elastic_log_strain=elastic_strain_of(ground.soil, stress, state),
         kirchhoff_stress=stress,
-        state_variables=dispatch.initial_state(ground.soil, -position[:, 1]),
+        state_variables=state,
         material=np.zeros(len(position), dtype=np.int64),
         cell=cells,
         reference_coordinates=coordinates,
@@ -86,7 +88,7 @@ def test_geostatic_ground_is_carried_exactly(mesh, clay_ground, rng):
     assert not is_empty.any()
     height = geometry.integration_height.ravel()
     stress = geostatic_stress(clay_ground, height, 1)
-    expected = elastic_strain_of(clay_ground.soil, stress)
+    expected = elastic_strain_of(clay_ground.soil, stress, quadrature.state_variables)
     np.testing.assert_allclose(
         quadrature.elastic_log_strain, expected, atol=1e-14 * np.abs(expected).max()
     )
@@ -260,7 +262,7 @@ def test_injection_moves_the_geostatic_state_exactly(mesh, clay_ground, with_hol
     enriched = injected(points, mesh, clay_ground)
     stress = geostatic_stress(clay_ground, enriched.position[:, 1], 1)
     np.testing.assert_allclose(enriched.kirchhoff_stress, stress, atol=1e-11 * np.abs(stress).max())
-    expected = elastic_strain_of(clay_ground.soil, stress)
+    expected = elastic_strain_of(clay_ground.soil, stress, enriched.state_variables)
     np.testing.assert_allclose(
         enriched.elastic_log_strain, expected, atol=1e-14 * np.abs(expected).max()
     )
@@ -271,7 +273,9 @@ def test_stress_of_an_injected_point_belongs_to_its_strain(mesh, clay_ground, wi
     points, _ = with_holes
     points.volume_ratio[:] = 0.8
     enriched = injected(points, mesh, clay_ground)
-    expected = elastic_strain_of(clay_ground.soil, enriched.kirchhoff_stress)
+    expected = elastic_strain_of(
+        clay_ground.soil, enriched.kirchhoff_stress, enriched.state_variables
+    )
     np.testing.assert_allclose(
         enriched.elastic_log_strain, expected, atol=1e-13 * np.abs(expected).max()
     )

@@ -65,7 +65,9 @@ def integration_points(mesh, rng, soil, *, random_start=True, kinematics=Kinemat
         density=np.ones(n_points),
         volume_ratio=rng.uniform(0.9, 1.1, n_points) if random_start else np.ones(n_points),
         elastic_log_strain=strain,
-        state_variables=dispatch.initial_state(soil, np.zeros(n_points)),
+        state_variables=dispatch.initial_state(
+            soil, np.zeros(n_points), np.zeros((n_points, 3, 3))
+        ),
         material=np.zeros(n_points, dtype=np.int64),
     )
 

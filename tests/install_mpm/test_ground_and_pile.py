@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from install_mpm.cells import CellType, reference_cell
+from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic, VonMises
 from install_mpm.conventions import GRAVITY, Kinematics, dimension, vertical_axis
+from install_mpm.geostatic import elastic_strain_of, geostatic_gradient
 from install_mpm.ground import Ground, geostatic_stress, undrained_shear_strength
 from install_mpm.interface import global_traction, reaction
 from install_mpm.mesh_generation import generate_background_mesh
@@ -26,7 +28,7 @@ from install_mpm.pile_surface import (
     pile_elements,
     place_points,
 )
-from install_mpm.seeding import elastic_strain_of, geostatic_gradient, seed_points
+from install_mpm.seeding import seed_points
 
 LAW = CoulombInterface(2e8, 2e7, cohesion=1e3, adhesion_factor=0.5)
 
@@ -72,7 +74,8 @@ def test_geostatic_gradient_is_the_slope_of_stress_and_strain(stiffening_ground)
     heights = np.array([-1.0, -3.5])
     stress = geostatic_stress(stiffening_ground, heights, 1)
     np.testing.assert_allclose(gradient.stress[0], (stress[0] - stress[1]) / 2.5, rtol=1e-13)
-    strain = elastic_strain_of(stiffening_ground.soil, stress)
+    state = dispatch.initial_state(stiffening_ground.soil, -heights, stress)
+    strain = elastic_strain_of(stiffening_ground.soil, stress, state)
     np.testing.assert_allclose(gradient.strain[0], (strain[0] - strain[1]) / 2.5, atol=1e-16)
     assert gradient.stress[0, 1, 1] == pytest.approx(18e3)
 
@@ -84,7 +87,7 @@ def test_elastic_strain_obeys_hooke(rng, elastic_ground):
     modulus, ratio = 5e6, 0.3
     trace = np.trace(stress, axis1=1, axis2=2)[:, None, None]
     expected = ((1.0 + ratio) * stress - ratio * trace * np.eye(3)) / modulus
-    strain = elastic_strain_of(elastic_ground.soil, stress)
+    strain = elastic_strain_of(elastic_ground.soil, stress, np.zeros((5, 0)))
     np.testing.assert_allclose(strain, expected, atol=1e-20, rtol=1e-10)
 
 
@@ -116,7 +119,7 @@ def test_seeded_points_are_where_they_say_and_in_their_geostatic_state(mesh, sti
     )
     stress = geostatic_stress(stiffening_ground, points.position[:, 1], 1)
     np.testing.assert_array_equal(points.kirchhoff_stress, stress)
-    expected = elastic_strain_of(stiffening_ground.soil, stress)
+    expected = elastic_strain_of(stiffening_ground.soil, stress, points.state_variables)
     np.testing.assert_array_equal(points.elastic_log_strain, expected)
     assert (points.volume_ratio == 1.0).all()
     assert not points.displacement.any()

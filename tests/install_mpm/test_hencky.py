@@ -21,7 +21,7 @@ def kirchhoff_stress(soil, increment, strain):
     """Kirchhoff stress (6,), consistent tangent and eigenpairs of the trial."""
     trial, stretches, directions = trial_strain(increment, strain)
     materials = dispatch.pack([soil])
-    state = dispatch.initial_state(soil, np.zeros(1))
+    state = dispatch.initial_state(soil, np.zeros(1), np.zeros((1, 3, 3)))
     shape = [(1, 6), (1, 6), state.shape, (1, 6, 6)]
     stress, elastic_strain, new_state, tangent = (np.empty(extent) for extent in shape)
     status, material = np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)

@@ -9,13 +9,23 @@ from scipy.linalg import expm
 
 from install_mpm.constitutive import dispatch, tresca
 from install_mpm.constitutive.dispatch import Model
-from install_mpm.constitutive.parameters import HenckyElastic, NeoHookean, Tresca, VonMises
+from install_mpm.constitutive.parameters import (
+    DruckerPrager,
+    HenckyElastic,
+    MohrCoulomb,
+    NeoHookean,
+    Tresca,
+    VonMises,
+)
+from install_mpm.constitutive.state_variables import STATE_VARIABLES
 
 SOILS = {
     Model.HENCKY_ELASTIC: HenckyElastic(4e6, 0.3),
     Model.VON_MISES: VonMises(4e6, 0.3, 20e3, 2e3),
     Model.NEO_HOOKEAN: NeoHookean(4e6, 0.3),
     Model.TRESCA: Tresca(4e6, 0.3, 20e3, 2e3),
+    Model.MOHR_COULOMB: MohrCoulomb(4e6, 0.3, 20e3, 0.6, 0.2),
+    Model.DRUCKER_PRAGER: DruckerPrager(4e6, 0.3, 20e3, 0.6, 0.2),
 }
 SIZES = {"elastic": 1e-3, "plastic": 5e-2, "large": 1.0}
 """Norm of the trial strain; the strength is reached at a shear strain of about 1e-2."""
@@ -27,13 +37,19 @@ every_clay = pytest.mark.parametrize("model", CLAYS, ids=lambda model: model.nam
 every_size = pytest.mark.parametrize("size", SIZES)
 
 
+def start_state(soil, depth):
+    """State variables at ``depth`` (n,) in unstressed soil."""
+    depth = np.asarray(depth)
+    return dispatch.initial_state(soil, depth, np.zeros((len(depth), 3, 3)))
+
+
 def evaluate(model, trial, state=None):
     """Evaluate the law at trial strains (n, 6)."""
     soil = SOILS[model]
     trial = np.ascontiguousarray(trial)
     n = len(trial)
     if state is None:
-        state = dispatch.initial_state(soil, np.zeros(n))
+        state = start_state(soil, np.zeros(n))
     result = SimpleNamespace(
         stress=np.empty((n, 6)),
         elastic_strain=np.empty((n, 6)),
@@ -57,10 +73,12 @@ def yield_function(model, stress, state):
     return value
 
 
-def strain_from_stress(model, stress):
+def strain_from_stress(model, stress, state):
     strain = np.empty_like(stress)
     material = np.zeros(len(stress), dtype=np.int64)
-    dispatch.elastic_strain_from_stress_all(dispatch.pack([SOILS[model]]), material, stress, strain)
+    dispatch.elastic_strain_from_stress_all(
+        dispatch.pack([SOILS[model]]), material, stress, state, strain
+    )
     return strain
 
 
@@ -113,7 +131,7 @@ def test_stress_is_admissible_after_the_update(model, size, trial_strains):
 def test_elastic_strain_and_stress_belong_together(model, size, trial_strains):
     """Stress to strain and back changes nothing, and an admissible state stays where it is."""
     first = evaluate(model, trial_strains(size))
-    strain = strain_from_stress(model, first.stress)
+    strain = strain_from_stress(model, first.stress, first.state)
     scale = np.abs(strain).max()
     np.testing.assert_allclose(strain, first.elastic_strain, atol=1e-13 * scale)
     second = evaluate(model, strain, first.state)
@@ -208,8 +226,10 @@ def test_elastic_law_is_isotropic_hooke(model, trial_strains, tensors_of):
 @every_model
 def test_state_variables_have_names_and_start_values(model):
     soil, depth = SOILS[model], np.array([0.0, 3.0])
-    state = dispatch.initial_state(soil, depth)
-    assert state.shape == (2, len(dispatch.state_variable_names(soil)))
+    state = start_state(soil, depth)
+    names = dispatch.state_variable_names(soil)
+    assert state.shape == (2, len(names))
+    assert set(names) <= set(STATE_VARIABLES)
     if model in CLAYS:
         np.testing.assert_allclose(state, [[20e3, 0.0], [26e3, 0.0]])
 
@@ -341,6 +361,6 @@ def test_tresca_says_when_the_strain_is_not_finite():
     soil = SOILS[Model.TRESCA]
     dispatch.update_all(
         dispatch.pack([soil]), np.zeros(1, dtype=np.int64), trial,
-        dispatch.initial_state(soil, np.zeros(1)), stress, elastic_strain, state, tangent, status,
+        start_state(soil, np.zeros(1)), stress, elastic_strain, state, tangent, status,
     )  # fmt: skip
     assert status[0] == tresca.NOT_FINITE

@@ -8,13 +8,13 @@ from install_mpm.assembly import sparsity_pattern
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic, VonMises
 from install_mpm.equilibrium import Prescribed
+from install_mpm.geostatic import elastic_strain_of
 from install_mpm.ground import Ground, geostatic_stress
 from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule
 from install_mpm.material_points import cauchy_stress
 from install_mpm.mesh_motion import translate
 from install_mpm.options import Numerics
 from install_mpm.pile import PileMotion
-from install_mpm.seeding import elastic_strain_of
 
 GROUNDS = {
     "clay": Ground(18e3, 0.8, VonMises(4e6, 0.49, 20e3)),
@@ -109,7 +109,7 @@ def test_rigid_rotation_turns_the_stress(make_column, make_rotation):
     stress = np.tile(stress, (len(points.mass), 1, 1))
     points = points._replace(
         kirchhoff_stress=stress,
-        elastic_log_strain=elastic_strain_of(column.ground.soil, stress),
+        elastic_log_strain=elastic_strain_of(column.ground.soil, stress, points.state_variables),
     )
     turn = make_rotation(2)
     total, current, start = np.eye(3), mesh, points
@@ -162,7 +162,7 @@ def test_points_are_admissible_and_consistent_after_a_plastic_step(make_column, 
     )
     norm = np.linalg.norm(deviator.reshape(n, 9), axis=1)
     assert (norm <= np.sqrt(2.0) * points.state_variables[:, 0] * (1.0 + 1e-9)).all()
-    expected = elastic_strain_of(clay_ground.soil, points.kirchhoff_stress)
+    expected = elastic_strain_of(clay_ground.soil, points.kirchhoff_stress, points.state_variables)
     np.testing.assert_allclose(points.elastic_log_strain, expected, atol=1e-14)
 
 

@@ -66,7 +66,7 @@ def test_integration_volumes_fill_the_box(soil):
 
 
 def test_weight_points_down_and_is_complete(soil):
-    weight = soil.weight(18e3)
+    weight = soil.weight(np.full(len(soil.integration_volumes), 18e3))
     np.testing.assert_allclose(weight.sum(axis=0), [0.0, -18e3 * 3.0], atol=1e-8)
 
 

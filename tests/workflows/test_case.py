@@ -102,7 +102,7 @@ def test_overrides_reach_tables_alternatives_and_list_entries():
 
 def test_another_soil_is_chosen_by_its_tag():
     soil = '{ model = "hencky_elastic", youngs_modulus = "1 GPa", poissons_ratio = 0.3 }'
-    case, _ = read_case(MAIN, [f"ground.soil={soil}"])
+    case, _ = read_case(MAIN, [f"ground.soil={soil}", "interface.adhesion_factor=0"])
     assert case.ground.soil == HenckyElastic(1e9, 0.3)
 
 
@@ -131,6 +131,16 @@ def test_another_soil_is_chosen_by_its_tag():
         ),
         ("ground.k0=true", "ground.k0", "valid number"),
         ("ground.k0=inf", "ground.k0", "finite number"),
+        ("ground.k0=Jaky", "ground.k0", '> 0 or one of "jaky"'),
+        ("ground.k0=jaky", "ground", "has no friction angle"),
+        ("ground.k0=0.1", "K0 stress of 'ground'", "exceeds the strength"),
+        ("ground.water_table=-1 m", "ground.water_table", "must be >= 0 m"),
+        ("ground.layers=[]", "ground", "not a known key"),
+        (
+            'ground.soil={model="hencky_elastic", youngs_modulus = "1 GPa", poissons_ratio = 0.3}',
+            "interface.adhesion_factor",
+            "has no undrained shear strength",
+        ),
         ("numerics.max_iterations=2.5", "numerics.max_iterations", "valid integer"),
         ("numerics.tolerance=1e-3", "numerics.tolerance", "<= 1e-06"),
         ("service.programmes=[]", "service.programmes", "add at least one"),

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from handoff.fe_mesh import make_mesh
 from handoff.surface import level_surface
+from install_mpm.ground import boundary_depths
 from install_mpm.pile import buried_weight
 from service_fe.problem import ServiceProblem
 from service_fe.result_file import write_service_result
@@ -32,7 +33,8 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         If a step does not converge; nothing is written.
     """
     depth = case.final_tip_depth
-    mesh = make_mesh(case.pile, depth, case.box, case.handoff, level_surface())
+    layers = boundary_depths(case.ground)
+    mesh = make_mesh(case.pile, depth, case.box, case.handoff, level_surface(), layers)
     problem = ServiceProblem(
         mesh, case.ground, case.interface, buried_weight(case.pile, depth), case.service.numerics
     )

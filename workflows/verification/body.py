@@ -18,13 +18,14 @@ from install_mpm.constitutive import dispatch
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme
 from install_mpm.equilibrium import Prescribed
+from install_mpm.geostatic import geostatic_gradient
 from install_mpm.ground import Ground
 from install_mpm.interface import InterfaceElements, InterfacePoints, no_interface
 from install_mpm.linear_solvers import mumps
 from install_mpm.material_points import MaterialPoints
 from install_mpm.options import Numerics
 from install_mpm.pile import PileMotion
-from install_mpm.seeding import geostatic_gradient, seed_points
+from install_mpm.seeding import seed_points
 from install_mpm.step import StepResult, step
 
 AT_REST = PileMotion(np.zeros(2))

@@ -21,10 +21,10 @@ from install_mpm.background_mesh import straightened
 from install_mpm.constitutive.parameters import HenckyElastic
 from install_mpm.conventions import Unit
 from install_mpm.equilibrium import Prescribed
+from install_mpm.geostatic import geostatic_gradient
 from install_mpm.ground import Ground
 from install_mpm.material_points import cauchy_stress
 from install_mpm.mesh_motion import stretch
-from install_mpm.seeding import geostatic_gradient
 from install_mpm.step import StepResult
 from workflows.verification.body import Body, make_body
 from workflows.verification.gravity import load_gravity, mesh_to, with_weight_of_points

@@ -7,9 +7,9 @@ import numpy as np
 from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
 from install_mpm.constitutive import dispatch
 from install_mpm.conventions import GRAVITY
+from install_mpm.geostatic import elastic_strain_of
 from install_mpm.ground import Ground
 from install_mpm.material_points import MaterialPoints
-from install_mpm.seeding import elastic_strain_of
 
 FOUR_POINTS = np.array([[1 / 3, 1 / 3], [0.2, 0.2], [0.6, 0.2], [0.2, 0.6]])
 """Reference coordinates of the four points of a triangle; each stands for a quarter of it."""
@@ -62,15 +62,17 @@ def four_points_per_cell(
     n_points = 4 * len(cells)
     volume = np.repeat(np.abs(np.linalg.det(edges)) / 2.0, 4) / 4.0
     stress = np.zeros((n_points, 3, 3))
+    depth = -position.reshape(n_points, 2)[:, 1]
+    state = dispatch.initial_state(ground.soil, depth, stress)
     return MaterialPoints(
         position=position.reshape(n_points, 2),
         displacement=np.zeros((n_points, 2)),
         mass=volume * ground.unit_weight / GRAVITY,
         volume=volume,
         volume_ratio=np.ones(n_points),
-        elastic_log_strain=elastic_strain_of(ground.soil, stress),
+        elastic_log_strain=elastic_strain_of(ground.soil, stress, state),
         kirchhoff_stress=stress,
-        state_variables=dispatch.initial_state(ground.soil, -position.reshape(n_points, 2)[:, 1]),
+        state_variables=state,
         material=np.zeros(n_points, dtype=np.int64),
         cell=np.repeat(cells, 4),
         reference_coordinates=np.tile(FOUR_POINTS, (len(cells), 1)),

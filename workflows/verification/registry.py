@@ -34,8 +34,10 @@ MODULES: tuple[str, ...] = (
     "rigid_disc",
     "shaft_friction",
     "sliding_block",
+    "soil_elements",
     "strip_footing_fe",
     "strip_footing_mpm",
+    "tangent_check",
     "thick_cylinder",
 )
 """Files of this folder with a ``PROBLEM`` or ``PROBLEMS``, sorted."""

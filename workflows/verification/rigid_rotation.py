@@ -15,11 +15,11 @@ import numpy as np
 from install_mpm.constitutive.parameters import HenckyElastic
 from install_mpm.conventions import Unit
 from install_mpm.equilibrium import Prescribed
+from install_mpm.geostatic import elastic_strain_of
 from install_mpm.ground import Ground
 from install_mpm.material_points import cauchy_stress
 from install_mpm.mesh_motion import rotate, rotate_clockwise
 from install_mpm.options import Numerics
-from install_mpm.seeding import elastic_strain_of
 from install_mpm.step import StepResult
 from workflows.verification.body import Body, advance, make_body
 from workflows.verification.disc_meshes import circle, disc_mesh, nodes_on
@@ -102,7 +102,8 @@ def with_stress(body: Body, soil: HenckyElastic, components: tuple[float, float,
     stress = np.array([[xx, xy, 0.0], [xy, yy, 0.0], [0.0, 0.0, zz]])
     stresses = np.repeat(stress[None], len(body.points.mass), axis=0)
     points = body.points._replace(
-        kirchhoff_stress=stresses, elastic_log_strain=elastic_strain_of(soil, stresses)
+        kirchhoff_stress=stresses,
+        elastic_log_strain=elastic_strain_of(soil, stresses, body.points.state_variables),
     )
     return body._replace(points=points)
 

@@ -19,12 +19,12 @@ from install_mpm.constitutive.parameters import HenckyElastic
 from install_mpm.conventions import GRAVITY
 from install_mpm.discretisation import Discretisation
 from install_mpm.equilibrium import Prescribed, StepEquilibrium, find_equilibrium
+from install_mpm.geostatic import elastic_strain_of
 from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule
 from install_mpm.linear_solvers import mumps
 from install_mpm.options import Numerics
 from install_mpm.pile import PileMotion
-from install_mpm.seeding import elastic_strain_of
 
 AT_REST = PileMotion(np.zeros(2))
 
@@ -99,6 +99,7 @@ def _filled_cells(
     n_points = n_cells * n_per_cell
     stress = np.zeros((n_points, 3, 3))
     stress[:, 1, 1] = vertical_stress
+    no_state = np.zeros((n_points, 0))
     points = IntegrationPoints(
         cell_start=np.arange(n_cells + 1) * n_per_cell,
         reference_coordinates=np.tile(model.cell.integration_coordinates, (n_cells, 1)),
@@ -107,8 +108,8 @@ def _filled_cells(
         volume=geometry.integration_volume.ravel(),
         density=np.full(n_points, unit_weight / GRAVITY),
         volume_ratio=np.ones(n_points),
-        elastic_log_strain=elastic_strain_of(soil, stress),
-        state_variables=np.zeros((n_points, 0)),
+        elastic_log_strain=elastic_strain_of(soil, stress, no_state),
+        state_variables=no_state,
         material=np.zeros(n_points, dtype=np.int64),
     )
     everywhere = np.ones(n_cells, dtype=bool)
