@@ -39,6 +39,7 @@ MODULES: tuple[str, ...] = (
     "strip_footing_mpm",
     "tangent_check",
     "thick_cylinder",
+    "units",
 )
 """Files of this folder with a ``PROBLEM`` or ``PROBLEMS``, sorted."""
 
