@@ -11,16 +11,16 @@ from typing import Annotated
 import numpy as np
 
 from install_mpm.conventions import Unit
-from workflows.verification.column import (
+from workflows.verification.problem import Outcome, Problem, at_most, relative
+from workflows.verification.references import ample
+from workflows.verification.references.ample import ColumnInput
+from workflows.verification.squeezed_column import (
     SIXTY_POINTS,
     MeshLaw,
     Resolution,
     squeeze,
     stress_curve,
 )
-from workflows.verification.problem import Outcome, Problem, at_most, relative
-from workflows.verification.references import ample
-from workflows.verification.references.ample import ColumnInput
 
 
 def ample_column(
