@@ -11,7 +11,7 @@ import numpy as np
 
 from install_mpm._jit import jit
 from install_mpm.constitutive.mandel import trace
-from install_mpm.constitutive.parameters import SoilParameters
+from install_mpm.constitutive.parameters import HookeanSoil, SoilParameters
 
 BULK, SHEAR = 0, 1
 """Columns of the packed parameters; the first two of every law that is elastic in this way."""
@@ -19,7 +19,7 @@ BULK, SHEAR = 0, 1
 STATE_VARIABLES: tuple[str, ...] = ()
 
 
-def pack(parameters: SoilParameters) -> np.ndarray:
+def pack(parameters: HookeanSoil) -> np.ndarray:
     """Return the packed parameters: bulk and shear modulus in Pa, shape (2,)."""
     youngs_modulus, poissons_ratio = parameters.youngs_modulus, parameters.poissons_ratio
     bulk = youngs_modulus / (3.0 * (1.0 - 2.0 * poissons_ratio))

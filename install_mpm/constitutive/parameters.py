@@ -15,6 +15,8 @@ from install_mpm.conventions import Unit
 
 Stiffness = Annotated[float, Unit("Pa"), Gt(0)]
 PoissonsRatio = Annotated[float, Ge(0), Lt(0.5)]
+PoreFluid = Annotated[float, Unit("Pa"), Ge(0)]
+"""Bulk modulus of the pore fluid over the porosity; zero if the soil drains freely."""
 FrictionAngle = Annotated[float, Unit("rad"), Gt(0), Lt(1.5)]
 DilationAngle = Annotated[float, Unit("rad"), Ge(0), Lt(1.5)]
 VoidRatio = Annotated[float, Gt(0)]
@@ -26,6 +28,7 @@ class HenckyElastic:
 
     youngs_modulus: Stiffness
     poissons_ratio: PoissonsRatio
+    pore_fluid_bulk_modulus: PoreFluid = 0.0
     model: Literal["hencky_elastic"] = "hencky_elastic"
 
 
@@ -90,6 +93,7 @@ class MohrCoulomb:
     dilation_angle: DilationAngle = 0.0
     initial_void_ratio: VoidRatio = 0.7
     critical_void_ratio: Annotated[float | None, Gt(0)] = None
+    pore_fluid_bulk_modulus: PoreFluid = 0.0
     model: Literal["mohr_coulomb"] = "mohr_coulomb"
 
     def __post_init__(self) -> None:
@@ -114,6 +118,7 @@ class DruckerPrager:
     cone: Literal["compression", "extension", "plane_strain", "inner"] = "compression"
     initial_void_ratio: VoidRatio = 0.7
     critical_void_ratio: Annotated[float | None, Gt(0)] = None
+    pore_fluid_bulk_modulus: PoreFluid = 0.0
     model: Literal["drucker_prager"] = "drucker_prager"
 
     def __post_init__(self) -> None:
@@ -131,10 +136,72 @@ def _check_flow(soil: MohrCoulomb | DruckerPrager) -> None:
 FrictionalSoil = MohrCoulomb | DruckerPrager
 """Soil laws with friction, dilation and a void ratio as state."""
 
+
+@dataclass(frozen=True)
+class ModifiedCamClay:
+    """Clay of critical-state theory: strength and stiffness follow pressure and void ratio.
+
+    Stress is effective; ``pore_fluid_bulk_modulus`` makes the clay undrained.  The shear modulus
+    is constant if ``shear_modulus`` is given, otherwise it follows the bulk modulus through
+    ``poissons_ratio``.  The preconsolidation pressure of the ground is that of the ellipse through
+    the initial stress times ``overconsolidation_ratio`` plus ``pre_overburden_pressure``; it is
+    never below ``lowest_pressure``, under which the bulk modulus does not fall any more.
+    """
+
+    critical_stress_ratio: Annotated[float, Gt(0)]
+    compression_index: Annotated[float, Gt(0)]
+    swelling_index: Annotated[float, Gt(0)]
+    void_ratio: Annotated[float, Gt(0)]
+    poissons_ratio: PoissonsRatio = 0.3
+    shear_modulus: Annotated[float, Unit("Pa"), Ge(0)] = 0.0
+    overconsolidation_ratio: Annotated[float, Ge(1)] = 1.0
+    pre_overburden_pressure: Annotated[float, Unit("Pa"), Ge(0)] = 0.0
+    lowest_pressure: Annotated[float, Unit("Pa"), Gt(0)] = 1e3
+    pore_fluid_bulk_modulus: PoreFluid = 0.0
+    model: Literal["modified_cam_clay"] = "modified_cam_clay"
+
+    def __post_init__(self) -> None:
+        """Refuse a normal compression line that is not steeper than the swelling lines."""
+        if self.swelling_index >= self.compression_index > 0.0:
+            raise ValueError(
+                f"swelling_index {self.swelling_index:g} is not below compression_index"
+                f" {self.compression_index:g}; clay swells less than it was compressed"
+            )
+
+
+@dataclass(frozen=True)
+class CriticalStateSand:
+    """Sand whose friction and dilation follow from its void ratio and pressure.
+
+    Stress is effective; ``pore_fluid_bulk_modulus`` makes the sand undrained.  The critical void
+    ratio is ``critical_void_ratio`` at a mean pressure of 1 kPa and falls by
+    ``critical_state_slope`` for every factor e of pressure.  The shear modulus at the pressure p is
+    ``reference_shear_modulus * (p / reference_pressure)^stiffness_exponent``; under
+    ``lowest_pressure`` stiffness and critical void ratio do not change any more.
+    """
+
+    void_ratio: Annotated[float, Gt(0)]
+    critical_stress_ratio: Annotated[float, Gt(0)]
+    critical_void_ratio: Annotated[float, Gt(0)]
+    critical_state_slope: Annotated[float, Ge(0)]
+    reference_shear_modulus: Stiffness
+    state_dilatancy: Annotated[float, Ge(0)] = 3.5
+    volumetric_coupling: Annotated[float, Ge(0), Lt(1)] = 0.3
+    stiffness_exponent: Annotated[float, Ge(0), Lt(1)] = 0.5
+    poissons_ratio: PoissonsRatio = 0.2
+    reference_pressure: Annotated[float, Unit("Pa"), Gt(0)] = 100e3
+    lowest_pressure: Annotated[float, Unit("Pa"), Gt(0)] = 1e3
+    pore_fluid_bulk_modulus: PoreFluid = 0.0
+    model: Literal["critical_state_sand"] = "critical_state_sand"
+
+
 UndrainedClay = VonMises | Tresca
 """Soil laws whose strength is ``undrained_shear_strength``, a state variable."""
 
-SoilParameters = HenckyElastic | NeoHookean | VonMises | Tresca | MohrCoulomb | DruckerPrager
+HookeanSoil = HenckyElastic | NeoHookean | VonMises | Tresca | MohrCoulomb | DruckerPrager
+"""Soil laws with a Young's modulus that does not depend on the pressure."""
+
+SoilParameters = HookeanSoil | ModifiedCamClay | CriticalStateSand
 """Every soil law a case can name; ``model`` tells them apart."""
 
 

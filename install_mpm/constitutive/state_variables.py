@@ -20,5 +20,13 @@ STATE_VARIABLES = {
     "plastic_shear_strain": StateVariable("", "accumulated plastic shear strain sqrt(2) |d eps_p|"),
     "plastic_log_volume": StateVariable("", "ln(1 + void ratio) less the elastic volume strain"),
     "opening": StateVariable("", "part of it that closes before the soil carries pressure again"),
+    "preconsolidation_pressure": StateVariable(
+        "Pa", "mean effective pressure at the tip of the yield surface"
+    ),
+    "shear_modulus": StateVariable("Pa", "elastic shear modulus at the current pressure"),
+    "excess_pore_pressure": StateVariable("Pa", "pore pressure beyond the hydrostatic one"),
+    "skeleton_volume": StateVariable(
+        "", "total volumetric strain of undrained soil less the elastic one of its skeleton"
+    ),
 }
 """Every state variable by name."""

@@ -22,6 +22,7 @@ MODULES: tuple[str, ...] = (
     "ample_collapse",
     "ample_column",
     "reload",
+    "cam_clay_undrained",
     "cantilever",
     "cavity",
     "circular_footing",

@@ -16,9 +16,9 @@ from install_mpm.constitutive.element_driver import element, respond
 from install_mpm.constitutive.parameters import (
     DruckerPrager,
     HenckyElastic,
+    HookeanSoil,
     MohrCoulomb,
     NeoHookean,
-    SoilParameters,
     Tresca,
     VonMises,
 )
@@ -42,7 +42,7 @@ class Answer(NamedTuple):
 
 
 def respond_at(
-    soil: SoilParameters, increments: np.ndarray, pressure: float, *, is_finite_strain: bool
+    soil: HookeanSoil, increments: np.ndarray, pressure: float, *, is_finite_strain: bool
 ) -> Answer:
     """Return the responses to ``increments`` (n, 3, 3) of F from an isotropic initial pressure.
 
@@ -69,7 +69,7 @@ def respond_at(
 
 
 def tangent_errors(
-    soil: SoilParameters, increments: np.ndarray, pressure: float, *, is_finite_strain: bool
+    soil: HookeanSoil, increments: np.ndarray, pressure: float, *, is_finite_strain: bool
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return errors (n,) of the tangent over Young's modulus, and which states have a kink (n,)."""
     rows, columns = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]
@@ -96,7 +96,7 @@ def tangent_errors(
     return error / soil.youngs_modulus, change > KINK * soil.youngs_modulus
 
 
-def turning_error(soil: SoilParameters, increments: np.ndarray, pressure: float,
+def turning_error(soil: HookeanSoil, increments: np.ndarray, pressure: float,
                   rng: np.random.Generator) -> float:  # fmt: skip
     """Return how far the response to turned strains is from the turned response, relative."""
     turn = np.linalg.qr(rng.normal(size=(len(increments), 3, 3)))[0]
@@ -140,7 +140,7 @@ def pe8(
     From an isotropic pressure p0, with increments of strain from 0.2 to 20 times su / E; and the
     response to turned strains with the turned response.
     """
-    soils: tuple[SoilParameters, ...] = (
+    soils: tuple[HookeanSoil, ...] = (
         HenckyElastic(E, nu),
         NeoHookean(E, nu),
         VonMises(E, nu, su),
