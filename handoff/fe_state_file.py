@@ -10,7 +10,8 @@ import numpy as np
 
 from handoff.fe_mesh import FEMesh
 from install_mpm.record import Field, StateFileError, read_record, write_record
-from install_mpm.state_file import open_state_file, read_header, write_header
+from install_mpm.seal import new_state_file, open_state_file
+from install_mpm.state_file import read_header, write_header
 
 FORMAT = "screwpile-handed-off-state"
 VERSION = 1
@@ -101,15 +102,11 @@ RECORDS = {
 
 def write_handed_off_state(path: Path, handed_off: HandedOffState, created_by: str) -> None:
     """Write the state to ``path`` atomically: a reader sees the old file or the whole new one."""
-    import h5py
-
-    partial = path.with_suffix(path.suffix + ".partial")
-    with h5py.File(partial, "w") as file:
+    with new_state_file(path) as file:
         write_header(file, FORMAT, VERSION, handed_off.case_text, created_by)
         file.create_group("certificate").attrs["json"] = handed_off.certificate
         for name in RECORDS:
             write_record(file.create_group(name), getattr(handed_off, name))
-    partial.replace(path)
 
 
 def read_handed_off_state(path: Path) -> HandedOffState:

@@ -23,7 +23,7 @@ from handoff.surface import surface_profile
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.ground import GroundProfile, boundary_depths
 from install_mpm.options import Box
-from install_mpm.pile import SYMMETRY_FACTOR, Pile, buried_weight
+from install_mpm.pile import WHOLE_PILE, Pile, buried_weight
 from install_mpm.state_file import InstalledState
 
 
@@ -52,15 +52,16 @@ def hand_over(
         If the material points are too few, or no soil touches a part of the pile.
     """
     tip_depth, points = float(installed.pile.tip_depth), installed.material_points
+    kinematics = installed.kinematics
 
     observe("mesh")
-    surface = surface_profile(points, pile.half_width, options.size_at_pile)
+    surface = surface_profile(points, pile.half_width, options.size_at_pile, kinematics)
     mesh = make_mesh(pile, tip_depth, box, options, surface, boundary_depths(ground))
     problem = make_problem(mesh)
 
     observe("transfer")
     targets = problem.integration_positions
-    chart = state_map(points, pile, tip_depth, targets, options.neighbours)
+    chart = state_map(points, pile, tip_depth, targets, options.neighbours, kinematics)
     raw = transfer_state(installed, ground, problem, chart)
 
     observe("admissibility")
@@ -96,9 +97,12 @@ def _handed_off(evidence: Evidence, mesh: FEMesh, certificate: Certificate) -> H
         problem.interface_areas,
         problem.interface_parts,
     )
-    forces = pile_forces(state.interface_traction, interface.normal, interface.area, interface.part)
-    weight = buried_weight(evidence.pile, float(installed.pile.tip_depth))
-    head_load = sum(forces.values()) / SYMMETRY_FACTOR - weight
+    kinematics = installed.kinematics
+    forces = pile_forces(
+        state.interface_traction, interface.normal, interface.area, interface.part, kinematics
+    )
+    weight = buried_weight(evidence.pile, float(installed.pile.tip_depth), kinematics)
+    head_load = sum(forces.values()) / WHOLE_PILE[kinematics] - weight
     return HandedOffState(
         mesh=mesh,
         state=state,

@@ -12,9 +12,10 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from handoff.geostatic import geostatic_traction
+from install_mpm.conventions import Kinematics
 from install_mpm.ground import GroundProfile
 from install_mpm.interface import InterfacePoints
-from install_mpm.pile import SYMMETRY_FACTOR, PilePart, surface_normals, tangent_of
+from install_mpm.pile import WHOLE_PILE, PilePart, surface_normals, tangent_of
 
 COORDINATE = {PilePart.BASE: 0, PilePart.SHAFT: 1}
 """Axis along which each part runs; both parts begin at its smallest value."""
@@ -60,12 +61,19 @@ def transferred_traction(
 
 
 def pile_forces(
-    traction: np.ndarray, normals: np.ndarray, areas: np.ndarray, parts: np.ndarray
+    traction: np.ndarray,
+    normals: np.ndarray,
+    areas: np.ndarray,
+    parts: np.ndarray,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> dict[PilePart, float]:
-    """Return the upward soil reaction in N on each part of the *whole* pile, per metre run."""
+    """Return the upward soil reaction in N on each part of the *whole* pile.
+
+    Of a wall in plane strain it is per metre run.
+    """
     upward_on_soil = traction[:, 0] * tangent_of(normals)[:, 1] + traction[:, 1] * normals[:, 1]
     return {
-        part: -SYMMETRY_FACTOR * float((upward_on_soil * areas)[parts == part].sum())
+        part: -WHOLE_PILE[kinematics] * float((upward_on_soil * areas)[parts == part].sum())
         for part in PilePart
     }
 

@@ -19,7 +19,7 @@ from handoff.synthetic import relative_norm, synthetic_errors
 from install_mpm.conventions import GRAVITY
 from install_mpm.ground import GroundProfile, unit_weights
 from install_mpm.material_points import cauchy_stress
-from install_mpm.pile import SYMMETRY_FACTOR, Pile, PilePart
+from install_mpm.pile import WHOLE_PILE, Pile, PilePart
 from install_mpm.state_file import InstalledState
 
 MAX_FALLBACK_SHARE = 0.01
@@ -44,7 +44,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Certificate:
-    """All figures by name; forces are for the whole pile, per metre run."""
+    """All figures by name; forces are for the whole pile, a wall per metre run."""
 
     figures: dict[str, Figure]
 
@@ -113,6 +113,7 @@ def _synthetic_figures(evidence: Evidence) -> dict[str, Figure]:
         evidence.installed.material_points.position,
         evidence.problem.integration_positions,
         evidence.problem.integration_volumes,
+        evidence.installed.kinematics,
     )
     what = "relative L2 error of a synthetic equilibrated field sampled at the material points"
     limit = evidence.options.max_synthetic_error
@@ -201,10 +202,13 @@ def _equilibrium_figures(evidence: Evidence) -> dict[str, Figure]:
 
 def _reaction_figures(evidence: Evidence) -> dict[str, Figure]:
     points, problem = evidence.installed.interface, evidence.problem
-    geometry = problem.interface_normals, problem.interface_areas, problem.interface_parts
+    kinematics = evidence.installed.kinematics
+    geometry = (
+        problem.interface_normals, problem.interface_areas, problem.interface_parts, kinematics
+    )  # fmt: skip
     covered_area = points.area * points.covered
     forces = {
-        "mpm": pile_forces(points.traction, points.normal, covered_area, points.part),
+        "mpm": pile_forces(points.traction, points.normal, covered_area, points.part, kinematics),
         "transferred": pile_forces(evidence.transferred.interface_traction, *geometry),
         "equilibrated": pile_forces(evidence.balanced.interface_traction, *geometry),
     }
@@ -215,7 +219,7 @@ def _reaction_figures(evidence: Evidence) -> dict[str, Figure]:
         for stage, force in forces.items()
         for part in PilePart
     }
-    before = SYMMETRY_FACTOR * float(evidence.installed.pile.reaction[VERTICAL])
+    before = WHOLE_PILE[kinematics] * float(evidence.installed.pile.reaction[VERTICAL])
     after = sum(forces["equilibrated"].values())
     what = "upward soil reaction on the pile"
     return parts | {

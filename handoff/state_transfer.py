@@ -11,9 +11,10 @@ from handoff.fe_state_file import FEState
 from handoff.geostatic import VERTICAL, elastic_strain_of
 from handoff.interface_transfer import transferred_traction
 from handoff.transfer import Obstacle, TransferWeights, least_squares_weights, transferred
+from install_mpm.conventions import Kinematics
 from install_mpm.geostatic import reference_state
 from install_mpm.ground import GroundProfile, material_at
-from install_mpm.material_points import MaterialPoints, cauchy_stress
+from install_mpm.material_points import MaterialPoints, cauchy_stress, plane_area
 from install_mpm.pile import Pile
 from install_mpm.state_file import InstalledState
 
@@ -28,15 +29,22 @@ class StateMap(NamedTuple):
 
     weights: TransferWeights
     relative_distance: np.ndarray
-    """Distance (n_q,) to the nearest visible material point over its size sqrt(volume)."""
+    """Distance (n_q,) to the nearest visible material point over its size sqrt(area)."""
     geostatic_share: np.ndarray
     """Share (n_q,) of the geostatic state: 0 but for targets far from every material point."""
 
 
 def state_map(
-    points: MaterialPoints, pile: Pile, tip_depth: float, targets: np.ndarray, neighbours: int
+    points: MaterialPoints,
+    pile: Pile,
+    tip_depth: float,
+    targets: np.ndarray,
+    neighbours: int,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> StateMap:
     """Return the map from material points to ``targets`` (n_q, 2).
+
+    Points count with their area in the plane of the model.
 
     Raises
     ------
@@ -44,8 +52,9 @@ def state_map(
         If there are fewer material points than ``neighbours``.
     """
     obstacle = Obstacle(pile.half_width, -tip_depth)
-    weights = least_squares_weights(points.position, points.volume, targets, neighbours, obstacle)
-    relative_distance = weights.distance / np.sqrt(points.volume[weights.nearest])
+    area = plane_area(points, kinematics)
+    weights = least_squares_weights(points.position, area, targets, neighbours, obstacle)
+    relative_distance = weights.distance / np.sqrt(area[weights.nearest])
     share = (relative_distance - FALLBACK_FROM) / (FALLBACK_FULL - FALLBACK_FROM)
     return StateMap(weights, relative_distance, np.clip(share, 0.0, 1.0))
 

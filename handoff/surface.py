@@ -14,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from install_mpm.material_points import MaterialPoints
+from install_mpm.conventions import Kinematics
+from install_mpm.material_points import MaterialPoints, at_start, plane_area
 
 LAYER = 3.0
 """Points whose initial depth is less than this many point sizes follow the surface."""
@@ -44,7 +45,12 @@ def height_at(surface: SurfaceProfile, x: np.ndarray) -> np.ndarray:
     return heights
 
 
-def surface_profile(points: MaterialPoints, half_width: float, station: float) -> SurfaceProfile:
+def surface_profile(
+    points: MaterialPoints,
+    half_width: float,
+    station: float,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+) -> SurfaceProfile:
     """Return the present surface beside the pile of ``half_width`` m, in pieces of ``station`` m.
 
     Level, exactly, if no point has moved.  Where the soil has left a gap beside the shaft the
@@ -57,7 +63,7 @@ def surface_profile(points: MaterialPoints, half_width: float, station: float) -
     """
     if not points.displacement.any():
         return level_surface()
-    initial_size = np.sqrt(points.volume / points.volume_ratio)
+    initial_size = np.sqrt(plane_area(at_start(points), kinematics))
     depth = points.displacement[:, 1] - points.position[:, 1]
     top = np.flatnonzero((depth < LAYER * initial_size) & (points.position[:, 0] > half_width))
     if len(top) < NEIGHBOURS:

@@ -6,7 +6,11 @@ The field balances gravity exactly: geostatic stress plus the field of an Airy f
     s_xx = phi,zz ,   s_zz = phi,xx ,   s_xz = -phi,xz ,   s_yy = (s_xx + s_zz) / 2 ,
 
 centred on the corners of the pile's tip, with L its half-width b: as steep as what a pile leaves
-behind.  The error of the map is known for it without any reference solution, at the actual points.
+behind.  In axisymmetry phi is a function of r and z and the field that balances is
+
+    s_rr = s_hoop = phi,zz ,   s_zz = phi,rr + phi,r / r ,   s_rz = -phi,rz .
+
+  The error of the map is known for it without any reference solution, at the actual points.
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ import numpy as np
 
 from handoff.geostatic import VERTICAL
 from handoff.state_transfer import StateMap, mapped
+from install_mpm.conventions import Kinematics
 from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
 from install_mpm.pile import Pile
 
@@ -23,7 +28,11 @@ STRENGTHS = 4.0
 
 
 def airy_stress(
-    ground: GroundProfile, pile: Pile, tip_depth: float, positions: np.ndarray
+    ground: GroundProfile,
+    pile: Pile,
+    tip_depth: float,
+    positions: np.ndarray,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> np.ndarray:
     """Return the self-equilibrated part (n, 3, 3) in Pa of the synthetic field at (n, 2)."""
     strength = undrained_shear_strength(ground, np.array([-tip_depth]))[0]
@@ -37,8 +46,11 @@ def airy_stress(
         stress[:, 0, 0] += bell * (below**2 - 1.0)
         stress[:, 1, 1] += bell * (beside**2 - 1.0)
         stress[:, 0, 1] -= bell * beside * below
+        if kinematics == Kinematics.AXISYMMETRIC:
+            stress[:, 1, 1] -= bell * beside * pile.half_width / positions[:, 0]
     stress[:, 1, 0] = stress[:, 0, 1]
-    stress[:, 2, 2] = 0.5 * (stress[:, 0, 0] + stress[:, 1, 1])
+    in_plane = 0.5 * (stress[:, 0, 0] + stress[:, 1, 1])
+    stress[:, 2, 2] = stress[:, 0, 0] if kinematics == Kinematics.AXISYMMETRIC else in_plane
     return stress
 
 
@@ -50,16 +62,17 @@ def synthetic_errors(
     point_positions: np.ndarray,
     targets: np.ndarray,
     volumes: np.ndarray,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> tuple[float, float]:
     """Return the relative L2 errors of the mapped synthetic field, everywhere and near the pile.
 
     Both are errors over the norm of the Airy part alone, because the geostatic part, though far
     larger, is mapped exactly.  Near is within one pile width of the pile.
     """
-    at_points = airy_stress(ground, pile, tip_depth, point_positions)
-    reference = airy_stress(ground, pile, tip_depth, targets)
+    at_points = airy_stress(ground, pile, tip_depth, point_positions, kinematics)
+    reference = airy_stress(ground, pile, tip_depth, targets, kinematics)
     error = mapped(state_map, at_points, np.zeros_like(reference)) - reference
-    is_near = distance_to_pile(pile, tip_depth, targets) <= 2.0 * pile.half_width
+    is_near = distance_to_pile(pile, tip_depth, targets) <= pile.width
     return (
         relative_norm(error, reference, volumes),
         relative_norm(error[is_near], reference[is_near], volumes[is_near]),

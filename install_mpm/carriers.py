@@ -95,6 +95,7 @@ def integration_points(
     return IntegrationPoints(
         cell_start=np.arange(shape[0] + 1) * shape[1],
         reference_coordinates=np.tile(cell.integration_coordinates, (shape[0], 1)),
+        shape_values=geometry.shape_values.reshape(-1, cell.n_nodes),
         shape_gradients=geometry.shape_gradients.reshape(-1, cell.n_nodes, cell.dim),
         hoop_gradients=geometry.hoop_gradients.reshape(-1, cell.n_nodes),
         volume=volume.ravel(),

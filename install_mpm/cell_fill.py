@@ -13,11 +13,18 @@ from install_mpm.integration_points import CellFill
 from install_mpm.kernels import carry
 from install_mpm.kernels import cell_geometry as kernels
 from install_mpm.material_points import MaterialPoints
+from install_mpm.ring_means import ring_means
 
 
 class CellGeometry(NamedTuple):
-    """Geometry of the cells at the start of a step; first axes (n_cells, n_integration_points)."""
+    """Geometry of the cells at the start of a step; first axes (n_cells, n_integration_points).
 
+    In axisymmetry shape functions and gradients are means around the ring of a point, see
+    ``ring_means``.
+    """
+
+    shape_values: np.ndarray
+    """(..., n_nodes)."""
     shape_gradients: np.ndarray
     """(..., n_nodes, dim) in 1/m."""
     hoop_gradients: np.ndarray
@@ -40,6 +47,7 @@ def cell_geometry(
     """Return shape gradients, volumes and heights of all cells."""
     shape = (len(mesh.cell_nodes), len(cell.reference_volumes))
     geometry = CellGeometry(
+        np.empty((*shape, cell.n_nodes)),
         np.empty((*shape, cell.n_nodes, cell.dim)),
         np.empty((*shape, cell.n_nodes)),
         np.empty(shape),
@@ -49,7 +57,10 @@ def cell_geometry(
         cell.cell_type, mesh.cell_nodes, mesh.nodes, cell.integration_coordinates,
         cell.reference_volumes, kinematics == Kinematics.AXISYMMETRIC, *geometry,
     )  # fmt: skip
-    return geometry
+    if kinematics != Kinematics.AXISYMMETRIC:
+        return geometry
+    values, gradients, hoop = ring_means(mesh.nodes[mesh.cell_nodes], cell)
+    return geometry._replace(shape_values=values, shape_gradients=gradients, hoop_gradients=hoop)
 
 
 def fill_cells(

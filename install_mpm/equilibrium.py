@@ -9,6 +9,7 @@ import numpy as np
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.constitutive.dispatch import Materials, Model
 from install_mpm.constitutive.elastic import BULK, SHEAR
+from install_mpm.constitutive.pressure_elasticity import bulk_modulus
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
@@ -21,6 +22,15 @@ from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffn
 from install_mpm.linear_solvers import Solve
 from install_mpm.newton import Evaluation, NewtonResult, solve_newton
 from install_mpm.pile import PileMotion, rigid_displacement
+
+PRESSURE_DEPENDENT = (Model.MODIFIED_CAM_CLAY, Model.CRITICAL_STATE_SAND)
+"""Laws whose stiffness grows with the pressure."""
+
+REFERENCE_PRESSURE = 50e3
+"""Pressure in Pa, that in a few metres of depth, at which their stiffness scales soft terms."""
+
+SHEAR_OVER_BULK = 0.5
+"""Shear over bulk modulus there: a Poisson's ratio of 0.29."""
 
 
 class Prescribed(NamedTuple):
@@ -49,8 +59,11 @@ class StepEquilibrium(NamedTuple):
 
 
 def youngs_modulus(materials: Materials) -> np.ndarray:
-    """Return Young's modulus (n_materials,) in Pa of the packed materials."""
-    bulk, shear = materials.parameters[:, BULK], materials.parameters[:, SHEAR]
+    """Return Young's modulus (n_materials,) in Pa, at ``REFERENCE_PRESSURE`` where it varies."""
+    bulk, shear = materials.parameters[:, BULK].copy(), materials.parameters[:, SHEAR].copy()
+    for row in np.flatnonzero(np.isin(materials.model, PRESSURE_DEPENDENT)):
+        bulk[row] = bulk_modulus(REFERENCE_PRESSURE, materials.parameters[row])
+        shear[row] = SHEAR_OVER_BULK * bulk[row]
     modulus: np.ndarray = 9.0 * bulk * shear / (3.0 * bulk + shear)
     return modulus
 
@@ -116,9 +129,11 @@ def _elastic_solution(system: _StepSystem, first: np.ndarray, solve: Solve) -> n
     """Return the trial displacement (n_dofs,) of elastic soil: one linear solve from ``first``.
 
     Driven nodes beside nodes at rest would put all of the motion into one row of cells, far beyond
-    yield; the elastic solution spreads it.
+    yield; the elastic solution spreads it.  Soil whose elasticity is not linear goes without.
     """
     soils = system.materials
+    if np.isin(soils.model, PRESSURE_DEPENDENT).any():
+        return first
     system.materials = soils._replace(model=np.full_like(soils.model, Model.HENCKY_ELASTIC))
     state = system.evaluate(first)
     system.materials = soils
@@ -158,7 +173,7 @@ class _StepSystem:
         self.element_stiffness = np.zeros((n_elements, n_element_nodes, dim, n_element_nodes, dim))
         self.external = np.zeros((n_nodes, dim))
         self.out_of_balance = np.zeros((n_nodes, dim))
-        body_force(model.cell.cell_type, mesh.cell_nodes, points, model.gravity, self.external)
+        body_force(mesh.cell_nodes, points, model.gravity, self.external)
         if prescribed.force is not None:
             self.external += prescribed.force
         is_held = np.zeros(n_nodes, dtype=bool)

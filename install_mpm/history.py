@@ -14,7 +14,7 @@ def _per_step(unit: str, doc: str, dtype: str = "float64", *, may_be_nan: bool =
 
 
 class History(NamedTuple):
-    """What happened in each accepted load step; forces are for the whole pile, per metre run."""
+    """What happened in each accepted load step; forces are for the whole pile."""
 
     penetration: Annotated[np.ndarray, _per_step("m", "pile penetration at the end of the step")]
     crowd_force: Annotated[
@@ -53,6 +53,16 @@ class History(NamedTuple):
     smallest_cell_quality: Annotated[
         np.ndarray, _per_step("", "worst ratio 2 r_in / r_out of a cell, 1 is equilateral")
     ]
+    remesh_stress_change: Annotated[
+        np.ndarray,
+        Field(("load_step",), "", "relative change of stress by a new mesh; NaN without one",
+              may_be_nan=True, default=np.nan),
+    ]  # fmt: skip
+    remesh_force_change: Annotated[
+        np.ndarray,
+        Field(("load_step",), "N", "change of the crowd force by a new mesh; NaN without one",
+              may_be_nan=True, default=np.nan),
+    ]  # fmt: skip
     residual_history: Annotated[
         np.ndarray,
         Field(("load_step", "iteration"), "", "relative residuals, NaN-padded", may_be_nan=True),

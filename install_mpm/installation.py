@@ -14,22 +14,33 @@ from install_mpm.conventions import Kinematics
 from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import GroundProfile, boundary_depths
 from install_mpm.history import append
-from install_mpm.installation_setup import ON_BOUNDARY, Installation, geostatic_state, set_up
+from install_mpm.installation_setup import (
+    DEFAULT_DISCRETISATION,
+    ON_BOUNDARY,
+    Installation,
+    cell_type_of,
+    geostatic_state,
+    set_up,
+    set_up_at,
+)
 from install_mpm.interface import reaction
 from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.mesh_motion import translate
 from install_mpm.newton import convergence_order
-from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
+from install_mpm.options import (
+    BackgroundMeshOptions,
+    Box,
+    DiscretisationOptions,
+    InstallationProgramme,
+    Numerics,
+)
 from install_mpm.pile import WHOLE_PILE, Pile, PileMotion, PilePart, buried_weight
+from install_mpm.remeshing import is_worn, on_new_mesh, with_changes
 from install_mpm.state_file import InstalledState, PileState, StepControl
 from install_mpm.step import StepResult, step
 
-GEOSTATIC_RESIDUAL = {Kinematics.PLANE_STRAIN: 1e-8, Kinematics.AXISYMMETRIC: 5e-3}
-"""Largest relative out-of-balance force of undisturbed ground.
-
-In plane strain round-off leaves about 1e-12.  In axisymmetry the rule of three points does not
-integrate weight times radius exactly; the first step evens out what is left of some 1e-4.
-"""
+GEOSTATIC_RESIDUAL = 1e-8
+"""Largest relative out-of-balance force of undisturbed ground; round-off leaves about 1e-12."""
 
 STEPS_BEFORE_GROWTH = 4
 """Steps that must converge after a cut before the step is doubled again."""
@@ -64,6 +75,7 @@ def install(
     case_text: str,
     *,
     kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+    discretisation: DiscretisationOptions = DEFAULT_DISCRETISATION,
     resume_from: InstalledState | None = None,
     observe: Observer = lambda state, progress: None,
 ) -> InstalledState:
@@ -81,10 +93,14 @@ def install(
         is not in equilibrium.
     """
     if resume_from is None:
-        mesh = generate_background_mesh(pile, box, mesh_options, boundary_depths(ground))
+        mesh = generate_background_mesh(
+            pile, box, mesh_options, boundary_depths(ground), cell_type_of(discretisation)
+        )
     else:
         mesh, kinematics = resume_from.background_mesh, resume_from.kinematics
-    problem = set_up(ground, pile, law, box, mesh_options, programme, numerics, mesh, kinematics)
+    problem = set_up(
+        ground, pile, law, box, mesh_options, programme, numerics, mesh, kinematics, discretisation
+    )
     if resume_from is None:
         state = geostatic_state(problem, mesh, mesh_options.points_per_direction, case_text)
         state, accepted = advance_pile(problem, state, 0.0)
@@ -93,6 +109,9 @@ def install(
     else:
         state = resume_from
     while float(state.pile.penetration) < programme.penetration - ON_BOUNDARY:
+        if is_worn(state.background_mesh, mesh_options.smallest_quality):
+            problem, state = renew_mesh(problem, state)
+            observe(state, _progress(problem, state))
         state, accepted = advance_pile(problem, state, _next_step(problem, state))
         if accepted:
             observe(state, _progress(problem, state))
@@ -107,12 +126,38 @@ def _check_start(state: InstalledState, accepted: bool) -> None:
     NotConvergedError
         If the geostatic stress was not in equilibrium.
     """
-    largest = GEOSTATIC_RESIDUAL[state.kinematics]
-    if not accepted or state.history.residual_history[0, 0] > largest:
+    if not accepted or state.history.residual_history[0, 0] > GEOSTATIC_RESIDUAL:
         raise NotConvergedError(
             "installation: the undisturbed ground is not in equilibrium, because its K0 stress "
             "exceeds its strength; use ground.k0 nearer to 1 or a stronger soil"
         )
+
+
+def renew_mesh(problem: Installation, state: InstalledState) -> tuple[Installation, InstalledState]:
+    """Return problem and state on a mesh made at the pile's place, in equilibrium at rest.
+
+    Raises
+    ------
+    NotConvergedError
+        If the new mesh is no better, or its first step does not converge.
+    """
+    depth = float(state.pile.tip_depth)
+    renewed, mesh, interface = set_up_at(problem, depth)
+    smallest = problem.mesh_options.smallest_quality
+    if is_worn(mesh, smallest):
+        raise NotConvergedError(
+            f"installation: the mesh made anew at a tip depth of {depth:.4f} m has a cell of "
+            f"quality {cell_quality(mesh).min():.2f}; use a background_mesh.smallest_quality "
+            f"below that (it is {smallest:g})"
+        )
+    resting, accepted = advance_pile(renewed, on_new_mesh(state, mesh, interface), 0.0)
+    if not accepted:
+        raise NotConvergedError(
+            f"installation: no equilibrium on the mesh made anew at a tip depth of {depth:.4f} m; "
+            "use another background_mesh.smallest_quality, or a finer mesh"
+        )
+    history = with_changes(resting.history, state, resting.material_points)
+    return renewed, resting._replace(history=history)
 
 
 def _next_step(problem: Installation, state: InstalledState) -> float:
@@ -141,10 +186,10 @@ def advance_pile(
         start=scale * control.displacement_per_step,
         move_mesh=lambda mesh: translate(
             mesh,
-            penetration,
-            -problem.pile.embedment,
+            penetration - (problem.reference_depth - problem.pile.embedment),
+            -problem.reference_depth,
             (-problem.box.depth, problem.box.headroom),
-            problem.rigid_zone,
+            problem.mesh_options.rigid_zone,
         ),
         model=problem.model,
         gradient=problem.gradient,
@@ -238,6 +283,8 @@ def _history_row(
         "convergence_order": convergence_order(newton.residuals),
         "cuts": int(state.control.cuts),
         "smallest_cell_quality": cell_quality(result.mesh).min(),
+        "remesh_stress_change": np.nan,
+        "remesh_force_change": np.nan,
         "residual_history": newton.residuals,
         **result.counts._asdict(),
     }

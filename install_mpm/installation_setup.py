@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,18 +14,29 @@ from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
-from install_mpm.discretisation import Discretisation, GeostaticGradient
+from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme
 from install_mpm.geostatic import geostatic_gradient
-from install_mpm.ground import GroundProfile, soils_of
+from install_mpm.ground import GroundProfile, boundary_depths, soils_of
 from install_mpm.history import empty_history
+from install_mpm.interface import InterfacePoints
 from install_mpm.linear_solvers import SOLVERS
-from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
+from install_mpm.mesh_generation import generate_background_mesh
+from install_mpm.options import (
+    BackgroundMeshOptions,
+    Box,
+    DiscretisationOptions,
+    InstallationProgramme,
+    Numerics,
+)
 from install_mpm.pile import Pile
 from install_mpm.seeding import seed_points
 from install_mpm.state_file import InstalledState, PileState, StepControl
 
 ON_BOUNDARY = 1e-9
 """Distance in m within which a node counts as lying on a side of the box."""
+
+
+DEFAULT_DISCRETISATION = DiscretisationOptions()
 
 
 class Installation(NamedTuple):
@@ -34,13 +46,16 @@ class Installation(NamedTuple):
     pile: Pile
     law: CoulombInterface
     box: Box
-    rigid_zone: float
+    mesh_options: BackgroundMeshOptions
     programme: InstallationProgramme
     numerics: Numerics
     model: Discretisation
     parts: np.ndarray
     supports: np.ndarray
     gradient: GeostaticGradient
+    discretisation: DiscretisationOptions
+    reference_depth: float
+    """Depth of the tip in m at which the mesh was made: its nodes are then the reference nodes."""
 
 
 def set_up(
@@ -53,24 +68,69 @@ def set_up(
     numerics: Numerics,
     mesh: BackgroundMesh,
     kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+    discretisation: DiscretisationOptions = DEFAULT_DISCRETISATION,
 ) -> Installation:
     """Return the problem on a given mesh: interface, sparsity, solver and supports."""
-    elements, parts = pile_surface.pile_elements(mesh, pile)
+    reference_depth = tip_depth_of_reference(mesh)
+    elements, parts = pile_surface.pile_elements(mesh, replace(pile, embedment=reference_depth))
+    scheme = Scheme(discretisation.scheme)
     pattern = sparsity_pattern([mesh.cell_nodes, elements.nodes], len(mesh.nodes), 2)
     model = Discretisation(
-        cell=reference_cell(CellType.TRI6),
+        cell=reference_cell(cell_type_of(discretisation)),
         elements=elements,
         materials=dispatch.pack(soils_of(ground)),
         pattern=pattern,
         solve=SOLVERS[numerics.linear_solver](pattern),
         numerics=numerics,
         kinematics=kinematics,
+        has_mean_dilatation=scheme == Scheme.CARRIERS,
+        scheme=scheme,
+        is_cell_weighted=discretisation.cell_weighted,
     )
     return Installation(
-        ground, pile, law, box, mesh_options.rigid_zone, programme, numerics, model, parts,
+        ground, pile, law, box, mesh_options, programme, numerics, model, parts,
         supports=_supports(mesh, box),
         gradient=geostatic_gradient(ground, vertical=1),
+        discretisation=discretisation,
+        reference_depth=reference_depth,
     )  # fmt: skip
+
+
+def set_up_at(
+    problem: Installation, tip_depth: float
+) -> tuple[Installation, BackgroundMesh, InterfacePoints]:
+    """Return problem, mesh and interface anew, with the mesh made for the tip at ``tip_depth`` m.
+
+    The interface carries the geostatic traction.
+    """
+    kinematics, discretisation = problem.model.kinematics, problem.discretisation
+    pile = replace(problem.pile, embedment=tip_depth)
+    mesh = generate_background_mesh(
+        pile,
+        problem.box,
+        problem.mesh_options,
+        boundary_depths(problem.ground),
+        cell_type_of(discretisation),
+    )
+    renewed = set_up(
+        problem.ground, problem.pile, problem.law, problem.box, problem.mesh_options,
+        problem.programme, problem.numerics, mesh, kinematics, discretisation,
+    )  # fmt: skip
+    interface = pile_surface.initial_interface(
+        renewed.model.elements, renewed.parts, mesh, problem.ground, problem.law, kinematics
+    )
+    return renewed, mesh, interface
+
+
+def cell_type_of(discretisation: DiscretisationOptions) -> CellType:
+    """Return the type of the cells of the background mesh."""
+    return CellType[discretisation.cells.upper()]
+
+
+def tip_depth_of_reference(mesh: BackgroundMesh) -> float:
+    """Return the depth in m of the pile's tip in the reference mesh: the top of its axis."""
+    x, z = mesh.reference_nodes.T
+    return float(-z[np.abs(x) < ON_BOUNDARY].max())
 
 
 def _supports(mesh: BackgroundMesh, box: Box) -> np.ndarray:

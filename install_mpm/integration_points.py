@@ -19,6 +19,8 @@ class IntegrationPoints(NamedTuple):
     """First point of each cell, (n_cells + 1,); cell c owns cell_start[c]:cell_start[c + 1]."""
     reference_coordinates: np.ndarray
     """Position in the reference cell, (n, dim)."""
+    shape_values: np.ndarray
+    """Shape functions by which the weight of the point acts on the nodes, (n, n_nodes)."""
     shape_gradients: np.ndarray
     """Shape gradients by start-of-step position, (n, n_nodes, dim) in 1/m."""
     hoop_gradients: np.ndarray

@@ -6,6 +6,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from install_mpm.conventions import Kinematics
 from install_mpm.record import Field
 
 
@@ -43,3 +44,21 @@ def cauchy_stress(points: MaterialPoints) -> np.ndarray:
     """Return the Cauchy stress (n_points, 3, 3) in Pa."""
     stress: np.ndarray = points.kirchhoff_stress / points.volume_ratio[:, None, None]
     return stress
+
+
+def plane_area(points: MaterialPoints, kinematics: Kinematics) -> np.ndarray:
+    """Return the area (n_points,) in m^2 of the points in the plane of a two-dimensional model."""
+    if kinematics != Kinematics.AXISYMMETRIC:
+        return points.volume
+    area: np.ndarray = points.volume / (2.0 * np.pi * points.position[:, 0])
+    return area
+
+
+def at_start(points: MaterialPoints) -> MaterialPoints:
+    """Return the points with the positions and volumes that they had before the installation."""
+    return points._replace(
+        position=points.position - points.displacement,
+        displacement=np.zeros_like(points.displacement),
+        volume=points.volume / points.volume_ratio,
+        volume_ratio=np.ones_like(points.volume_ratio),
+    )

@@ -8,19 +8,25 @@ import gmsh
 import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
+from install_mpm.cells import CellType, reference_cell
 from install_mpm.options import BackgroundMeshOptions, Box
 from install_mpm.pile import Pile
 from install_mpm.soil_bands import Drawing, soil_bands
 
-GMSH_TRIANGLE_6 = 9
+GMSH_TYPE = {CellType.TRI3: 2, CellType.TRI6: 9}
+"""Numbers by which gmsh knows the cells."""
 FINE_REACH = 1.0
 """Half-widths around the base within which the size is that at the pile; half for the shaft."""
 
 
 def generate_background_mesh(
-    pile: Pile, box: Box, options: BackgroundMeshOptions, boundaries: Sequence[float] = ()
+    pile: Pile,
+    box: Box,
+    options: BackgroundMeshOptions,
+    boundaries: Sequence[float] = (),
+    cell_type: CellType = CellType.TRI6,
 ) -> BackgroundMesh:
-    """Return a mesh of 6-node triangles conforming to the pile and to the level ground surface.
+    """Return a mesh of triangles conforming to the pile and to the level ground surface.
 
     It also conforms to the ``boundaries`` of layers, depths in m, so that geostatic stress, which
     jumps there or changes its slope, is integrated exactly.  It covers the ground and the headroom
@@ -34,8 +40,8 @@ def generate_background_mesh(
         _draw(pile, box, boundaries)
         _set_sizes(pile, options)
         gmsh.model.mesh.generate(2)
-        gmsh.model.mesh.setOrder(2)
-        return _collect()
+        gmsh.model.mesh.setOrder(2 if cell_type == CellType.TRI6 else 1)
+        return _collect(cell_type)
     finally:
         gmsh.finalize()
 
@@ -88,12 +94,13 @@ def _set_sizes(pile: Pile, options: BackgroundMeshOptions) -> None:
         gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
 
 
-def _collect() -> BackgroundMesh:
+def _collect(cell_type: CellType) -> BackgroundMesh:
     """Return the mesh that gmsh holds, with nodes numbered as used."""
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
-    _, cells = gmsh.model.mesh.getElementsByType(GMSH_TRIANGLE_6)
+    _, cells = gmsh.model.mesh.getElementsByType(GMSH_TYPE[cell_type])
     used, cell_nodes = np.unique(cells, return_inverse=True)
     position = np.empty(int(tags.max()) + 1, dtype=np.int64)
     position[tags] = np.arange(len(tags))
     nodes = coordinates.reshape(-1, 3)[position[used], :2]
-    return make_background_mesh(nodes, cell_nodes.reshape(-1, 6))
+    n_cell_nodes = reference_cell(cell_type).n_nodes
+    return make_background_mesh(nodes, cell_nodes.reshape(-1, n_cell_nodes))

@@ -1,10 +1,29 @@
-"""The mesh follows the pile: laws that move nodes, decoupled from the material points."""
+"""The mesh follows the pile: laws that move nodes, decoupled from the material points.
+
+Every law returns the mesh with its nodes placed from the *reference* mesh by the whole motion so
+far, so nothing drifts.  Neighbours and cells stay; only ``nodes`` change, and mid-side nodes lie in
+the middle of their edges.  No law knows a material point: stress, volume and mass cannot change.
+After a motion the points have to be found again (``location.relocate``); a step does that for the
+mesh that its own law returns, so a mesh must not be moved between steps without it.
+
+==========================  ====================================================================
+``translate``               vertically, stretched between fixed levels: paper, eqs (1), (2)
+``rotate``                  about the origin: paper, eqs (3), (4); whole, or tapered to a fixed rim
+``translate_and_rotate``    with a rigid body in the plane, tapered to a fixed rim
+``stretch``                 each axis by a factor
+``expand``                  away from the origin or the axis, tapered to a fixed rim
+``reset``                   back to the reference mesh, carried along by the pile
+==========================  ====================================================================
+
+A mesh whose cells have become too flat is made anew instead: ``remeshing``.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh, straightened
+from install_mpm.pile import PileMotion, rigid_displacement
 
 
 def translate(
@@ -30,10 +49,11 @@ def translate(
     return straightened(mesh._replace(nodes=nodes))
 
 
-def rotate_clockwise(nodes: np.ndarray, angle: float) -> np.ndarray:
+def rotate_clockwise(nodes: np.ndarray, angle: float | np.ndarray) -> np.ndarray:
     """Return ``nodes`` (n, 2) turned about the origin by ``angle`` (rad), clockwise if positive.
 
-    Paper, eqs (3) and (4), as printed: x1 = x0 cos + y0 sin, y1 = -x0 sin + y0 cos.
+    Paper, eqs (3) and (4), as printed: x1 = x0 cos + y0 sin, y1 = -x0 sin + y0 cos.  The angle may
+    differ from node to node, (n,).
     """
     cosine, sine = np.cos(angle), np.sin(angle)
     x, y = nodes[:, 0], nodes[:, 1]
@@ -53,15 +73,37 @@ def rotate(
     whole angle applies within ``inner_radius``; it tapers linearly to zero at ``outer_radius``.
     """
     nodes = mesh.reference_nodes
-    radius = np.linalg.norm(nodes, axis=1)
-    share = np.ones(len(nodes))
-    if np.isfinite(outer_radius):
-        share = np.clip((outer_radius - radius) / (outer_radius - inner_radius), 0.0, 1.0)
-    turned = np.empty_like(nodes)
-    for value in np.unique(share):
-        own = share == value
-        turned[own] = rotate_clockwise(nodes[own], -angle * value)
-    return straightened(mesh._replace(nodes=turned))
+    share = _taper(np.linalg.norm(nodes, axis=1), inner_radius, outer_radius)
+    return straightened(mesh._replace(nodes=rotate_clockwise(nodes, -angle * share)))
+
+
+def translate_and_rotate(
+    mesh: BackgroundMesh,
+    motion: PileMotion,
+    *,
+    inner_radius: float = np.inf,
+    outer_radius: float = np.inf,
+) -> BackgroundMesh:
+    """Return the mesh with its reference nodes moved by the rigid ``motion`` of the body.
+
+    First the rotation about the origin, then the translation.  All of both applies within
+    ``inner_radius`` of the origin; angle and translation taper linearly to zero at
+    ``outer_radius``.
+    """
+    nodes = mesh.reference_nodes
+    share = _taper(np.linalg.norm(nodes, axis=1), inner_radius, outer_radius)
+    turned = rotate_clockwise(nodes, -motion.rotation * share)
+    return straightened(mesh._replace(nodes=turned + share[:, None] * motion.translation))
+
+
+def reset(mesh: BackgroundMesh, motion: PileMotion) -> BackgroundMesh:
+    """Return the reference mesh at its place relative to the pile, which has made ``motion``.
+
+    All nodes go with the pile, so cells have their first shape again; a mesh that is to stay in a
+    fixed box needs ``translate`` or a new mesh instead.
+    """
+    nodes = mesh.reference_nodes
+    return straightened(mesh._replace(nodes=nodes + rigid_displacement(motion, nodes)))
 
 
 def stretch(mesh: BackgroundMesh, factors: tuple[float, float]) -> BackgroundMesh:
@@ -86,6 +128,14 @@ def expand(
     horizontal = np.column_stack([nodes[:, 0], np.zeros(len(nodes))])
     outward = horizontal if is_radius_horizontal else nodes
     radius = np.linalg.norm(outward, axis=1)
-    share = np.clip((outer_radius - radius) / (outer_radius - inner_radius), 0.0, 1.0)
+    share = _taper(radius, inner_radius, outer_radius)
     distance = growth * share / np.maximum(radius, inner_radius)
     return straightened(mesh._replace(nodes=nodes + distance[:, None] * outward))
+
+
+def _taper(radius: np.ndarray, inner_radius: float, outer_radius: float) -> np.ndarray:
+    """Return the share (n,) of a motion: one within the inner radius, zero from the outer one."""
+    if not np.isfinite(outer_radius):
+        return np.ones_like(radius)
+    share: np.ndarray = np.clip((outer_radius - radius) / (outer_radius - inner_radius), 0.0, 1.0)
+    return share

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Le
+from annotated_types import Ge, Gt, Le, Lt
 
 from install_mpm.conventions import Unit
 
@@ -31,6 +31,28 @@ class BackgroundMeshOptions:
     rigid_zone: Annotated[float, Unit("m"), Ge(0)] = 0.0
     points_per_direction: Annotated[int, Ge(1), Le(4)] = 2
     """Points per sub-region and direction: a triangle has 3 sub-regions, so 2 gives 12 points."""
+    smallest_quality: Annotated[float, Ge(0), Lt(0.5)] = 0.0
+    """The mesh is made anew at the pile's place before a step if a cell is worse than this (2 r_in
+    / r_out, 1 is equilateral); 0 never.
+    """
+
+
+@dataclass(frozen=True)
+class DiscretisationOptions:
+    """What material points are to the equations of a step, and on which cells.
+
+    ``docs/method.md`` compares the choices and says why the default is the default.
+    """
+
+    scheme: Literal["carriers", "quadrature"] = "carriers"
+    """``carriers``: points carry the state to fixed integration points of the cells, with mean
+    dilatation, injection and merging. ``quadrature``: points are the integration points, as in
+    the paper.
+    """
+    cells: Literal["tri6", "tri3"] = "tri6"
+    """Six-node triangles, or the three-node triangles of the paper."""
+    cell_weighted: bool = False
+    """With ``quadrature``: scale the volumes of the points of interior cells to the cell's."""
 
 
 @dataclass(frozen=True)

@@ -32,12 +32,17 @@ class Pile:
     embedment: Annotated[float, Unit("m"), Gt(0)]
     unit_weight: Annotated[float, Unit("N/m^3"), Ge(0)]
 
+    @property
+    def width(self) -> float:
+        """Width of the wall or diameter of the round pile in m."""
+        return 2.0 * self.half_width
 
-SYMMETRY_FACTOR = 2.0
-"""Whole pile over modelled half; histories, curves and reports are for the whole."""
 
-WHOLE_PILE = {Kinematics.PLANE_STRAIN: SYMMETRY_FACTOR, Kinematics.AXISYMMETRIC: 1.0}
-"""Whole pile over what the forces of a model stand for: axisymmetric forces are those of all."""
+WHOLE_PILE = {Kinematics.PLANE_STRAIN: 2.0, Kinematics.AXISYMMETRIC: 1.0}
+"""Whole pile over what the forces of a model stand for: half of a wall, or all of a round pile.
+
+Histories, curves and reports are for the whole pile.
+"""
 
 
 def surface_normals(part: np.ndarray) -> np.ndarray:

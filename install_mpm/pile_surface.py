@@ -33,9 +33,12 @@ def pile_elements(mesh: BackgroundMesh, pile: Pile) -> tuple[InterfaceElements, 
         selected.append(found)
         parts.append(np.full(len(found), int(part)))
     cell, facet = np.concatenate(selected).T
-    middle = mesh.cell_nodes[cell, 3 + (facet + 1) % 3]  # the mid-side between vertices v+1 and v+2
-    nodes = np.column_stack([ends[cell, facet], middle])
-    shape_values, weights = facet_rule(3, POINTS_PER_FACET)
+    nodes = ends[cell, facet]
+    if mesh.cell_nodes.shape[1] == 6:
+        # the mid-side between vertices v+1 and v+2
+        nodes = np.column_stack([nodes, mesh.cell_nodes[cell, 3 + (facet + 1) % 3]])
+    nodes = np.ascontiguousarray(nodes)
+    shape_values, weights = facet_rule(nodes.shape[1], POINTS_PER_FACET)
     return InterfaceElements(nodes, cell, shape_values, weights), np.concatenate(parts)
 
 

@@ -50,7 +50,7 @@ def integration_points(
     volume.
     """
     order = fill.point_order
-    _, gradients, hoop = shapes(points, mesh, cell, kinematics)
+    values, gradients, hoop = shapes(points, mesh, cell, kinematics)
     scale = np.ones(len(mesh.cell_nodes))
     if is_cell_weighted:
         scale = np.where(
@@ -59,6 +59,7 @@ def integration_points(
     return IntegrationPoints(
         cell_start=fill.cell_start,
         reference_coordinates=points.reference_coordinates[order],
+        shape_values=values[order],
         shape_gradients=gradients[order],
         hoop_gradients=hoop[order],
         volume=(points.volume * scale[points.cell])[order],

@@ -36,6 +36,8 @@ class Field:
     doc: str
     dtype: str = "float64"
     may_be_nan: bool = False
+    default: float | None = None
+    """What a file from before the field was added is read as; None: the field is required."""
 
 
 def fields_of(record_type: type) -> dict[str, Field]:
@@ -77,6 +79,9 @@ def read_record(group: h5py.Group, record_type: type[Record]) -> Record:
 def _read_field(group: h5py.Group, name: str, field: Field, extents: dict[str, int]) -> np.ndarray:
     place = f"{group.file.filename}: dataset {group.name}/{name}"
     remedy = "write the file again with the stage that makes it"
+    if name not in group and field.default is not None:
+        shape = [extents.get(extent, 0) for extent in field.shape]  # type: ignore[arg-type]
+        return np.full(shape, field.default, dtype=field.dtype)
     if not isinstance(group.get(name), h5py.Dataset):
         raise StateFileError(f"{place} is missing; {remedy}")
     try:

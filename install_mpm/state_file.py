@@ -15,6 +15,7 @@ from install_mpm.history import History
 from install_mpm.interface import InterfacePoints
 from install_mpm.material_points import MaterialPoints
 from install_mpm.record import Field, StateFileError, read_record, write_record
+from install_mpm.seal import new_state_file, open_state_file
 
 FORMAT = "screwpile-installed-state"
 VERSION = 1
@@ -112,34 +113,13 @@ def read_header(file: h5py.File, file_format: str, version: int) -> str:
     return case_text
 
 
-def open_state_file(path: Path) -> h5py.File:
-    """Open an HDF5 state file for reading.
-
-    Raises
-    ------
-    StateFileError
-        If it does not exist, is truncated or is no HDF5 file.
-    """
-    if not path.exists():
-        raise StateFileError(f"{path}: no such file; run the stage that writes it first")
-    try:
-        return h5py.File(path, "r")
-    except OSError as error:
-        raise StateFileError(
-            f"{path}: truncated or not an HDF5 file ({error}); "
-            "write it again with the stage that makes it"
-        ) from error
-
-
 def write_installed_state(path: Path, state: InstalledState, created_by: str) -> None:
     """Write the state to ``path`` atomically: a reader sees the old file or the whole new one."""
-    partial = path.with_suffix(path.suffix + ".partial")
-    with h5py.File(partial, "w") as file:
+    with new_state_file(path) as file:
         write_header(file, FORMAT, VERSION, state.case_text, created_by)
         file.attrs["kinematics"] = state.kinematics.name
         for name in RECORDS:
             write_record(file.create_group(name), getattr(state, name))
-    partial.replace(path)
 
 
 def read_installed_state(path: Path) -> InstalledState:

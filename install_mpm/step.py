@@ -19,7 +19,7 @@ from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme
 from install_mpm.equilibrium import Prescribed, StepEquilibrium, find_equilibrium
 from install_mpm.integration_points import CellFill
 from install_mpm.interface import InterfacePoints
-from install_mpm.kernels.locate import PROJECTED, locate_points
+from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import PileMotion
 
@@ -122,14 +122,3 @@ def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation)
     return interface._replace(
         covered=covered, traction=np.where(covered[:, None] > 0.0, interface.traction, 0.0)
     )
-
-
-def locate(points: MaterialPoints, mesh: BackgroundMesh) -> int:
-    """Find the cell of every point, in place; return how many were brought back into the mesh."""
-    status, before = np.zeros(len(points.cell), dtype=np.int64), points.position.copy()
-    locate_points(
-        mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours, points.position, points.cell,
-        points.reference_coordinates, status, np.empty(3),
-    )  # fmt: skip
-    points.displacement[:] += points.position - before
-    return int(np.count_nonzero(status == PROJECTED))

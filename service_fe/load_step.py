@@ -233,7 +233,10 @@ class LoadStep:
         per_motion = np.array([solver.solve(column) for column in columns])
         schur = interface.pile[np.ix_(loaded, loaded)] - interface.pile_soil[loaded] @ per_motion.T
         force = self.control.load - trial.pile_force - interface.pile @ pile_jump
-        unknown = np.linalg.solve(schur, force[loaded] - interface.pile_soil[loaded] @ soil)
+        try:
+            unknown = np.linalg.solve(schur, force[loaded] - interface.pile_soil[loaded] @ soil)
+        except np.linalg.LinAlgError as error:
+            raise StepNotConvergedError("the pile has come loose from the soil", ()) from error
         pile_jump[loaded] = unknown
         return np.concatenate([soil - per_motion.T @ unknown, pile_jump])
 

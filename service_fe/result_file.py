@@ -12,7 +12,8 @@ import h5py
 from handoff.fe_mesh import FEMesh
 from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEState
 from install_mpm.record import StateFileError, read_record, write_record
-from install_mpm.state_file import open_state_file, read_header, write_header
+from install_mpm.seal import new_state_file, open_state_file
+from install_mpm.state_file import read_header, write_header
 from service_fe.options import Displace, Programme, Release
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
 
@@ -31,8 +32,7 @@ _REMEDY = "run the service stage again"
 
 def write_service_result(path: Path, result: ServiceResult, created_by: str) -> None:
     """Write the result to ``path`` atomically: a reader sees the old file or the whole new one."""
-    partial = path.with_suffix(path.suffix + ".partial")
-    with h5py.File(partial, "w") as file:
+    with new_state_file(path) as file:
         write_header(file, FORMAT, VERSION, result.case_text, created_by)
         file.attrs["model"] = result.model
         for name in RECORDS:
@@ -43,7 +43,6 @@ def write_service_result(path: Path, result: ServiceResult, created_by: str) -> 
             group.attrs["programme"] = json.dumps(asdict(programme_result.programme))
             for name in PROGRAMME_RECORDS:
                 write_record(group.create_group(name), getattr(programme_result, name))
-    partial.replace(path)
 
 
 def read_service_result(path: Path) -> ServiceResult:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,13 @@ from handoff.options import HandoffOptions
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import GroundProfile
-from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
+from install_mpm.options import (
+    BackgroundMeshOptions,
+    Box,
+    DiscretisationOptions,
+    InstallationProgramme,
+    Numerics,
+)
 from install_mpm.pile import Pile
 from service_fe.options import ServiceOptions
 from workflows.cross_checks import check
@@ -30,20 +36,18 @@ class Case:
 
     title: str
     """What the results are called; a results directory belongs to one title."""
+    kinematics: Kinematics = field(default=Kinematics.PLANE_STRAIN, kw_only=True)
+    """A wall in plane strain, per metre run, or a round pile in axisymmetry."""
     ground: GroundProfile
     pile: Pile
     interface: CoulombInterface
     box: Box
     background_mesh: BackgroundMeshOptions
+    discretisation: DiscretisationOptions = field(default=DiscretisationOptions(), kw_only=True)
     installation: InstallationProgramme
     numerics: Numerics
     handoff: HandoffOptions
     service: ServiceOptions
-
-    @property
-    def kinematics(self) -> Kinematics:
-        """How displacements make strains; plane strain for now."""
-        return Kinematics.PLANE_STRAIN
 
     @property
     def final_tip_depth(self) -> float:

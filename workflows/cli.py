@@ -6,7 +6,8 @@ Modules that take long to load are imported inside the commands, so that others 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -67,7 +68,8 @@ def run(
     from workflows.runner import run_case
 
     loaded, directory = _load(case, output, overrides)
-    run_case(loaded, directory, resume=resume)
+    with _resumable(directory):
+        run_case(loaded, directory, resume=resume)
 
 
 @app.command()
@@ -78,7 +80,8 @@ def install(
     from workflows.runner import run_from_case
 
     loaded, directory = _load(case, output, overrides)
-    run_from_case("install", loaded, directory, resume=resume)
+    with _resumable(directory):
+        run_from_case("install", loaded, directory, resume=resume)
 
 
 @app.command()
@@ -190,7 +193,8 @@ def element_test(
 @app.command()
 def verify(
     problems: Annotated[
-        list[str] | None, typer.Argument(metavar="[ID]...", help="Problems; all if none is named.")
+        list[str] | None,
+        typer.Argument(metavar="[ID | CASE]...", help="Problems or case files; all if none."),
     ] = None,
     overrides: Annotated[
         list[str] | None,
@@ -233,6 +237,19 @@ def _load(path: Path, output: Path | None, overrides: list[str] | None) -> tuple
     return case, output or Path("out") / path.stem
 
 
+@contextmanager
+def _resumable(directory: Path) -> Iterator[None]:
+    """Say after Ctrl-C that the installation can go on, if it has left a checkpoint."""
+    from workflows.directory import CHECKPOINT
+
+    try:
+        yield
+    except KeyboardInterrupt:
+        if (directory / CHECKPOINT).exists():
+            print("screwpile: --resume continues the installation", file=sys.stderr)
+        raise
+
+
 def is_user_error(error: Exception) -> bool:
     """Return whether ``error`` is one that a stage documents, with a message for the user."""
     kinds = {f"{kind.__module__}.{kind.__qualname__}" for kind in type(error).__mro__}
@@ -259,7 +276,7 @@ def run_as_command(command: typer.Typer) -> None:
         command()
     except SystemExit as end:  # typer turns Ctrl-C into this status
         if end.code == INTERRUPTED:
-            print("screwpile: stopped; --resume continues an installation", file=sys.stderr)
+            print("screwpile: stopped", file=sys.stderr)
         raise
     except Exception as error:
         if not is_user_error(error):

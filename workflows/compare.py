@@ -54,7 +54,7 @@ def headline(
         "installation": installation_figures(installed),
         "service": {
             result.programme.name: programme_figures(
-                result, wished.programme(result.programme.name), 2.0 * case.pile.half_width
+                result, wished.programme(result.programme.name), case.pile.width
             )
             for result in service.programmes
         },
@@ -133,7 +133,7 @@ def continuity_figures(
     force = float(installed.history.crowd_force[-1])
     if float(installed.pile.penetration) == 0.0 or force == 0.0:
         return {}
-    width = 2.0 * case.pile.half_width
+    width = case.pile.width
     figures: dict[str, Any] = {}
     for result in service.programmes:
         programme = result.programme

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from install_mpm.conventions import Kinematics
 from service_fe.options import Release
 from workflows.errors import CaseError
 
@@ -26,6 +27,8 @@ def check(case: Case) -> None:
     CaseError
         Naming the keys, their values and the remedy, at the first contradiction.
     """
+    _check_kinematics(case)
+    _check_discretisation(case)
     _check_ground(case)
     _check_geometry(case)
     _check_mesh_sizes(case)
@@ -33,6 +36,38 @@ def check(case: Case) -> None:
     _check_step(case)
     _check_programmes(case)
     _check_solver(case)
+
+
+def _check_kinematics(case: Case) -> None:
+    if case.kinematics == Kinematics.THREE_D:
+        raise CaseError(
+            'kinematics is "three_d", but the stages are two-dimensional; '
+            'use "plane_strain" or "axisymmetric"'
+        )
+
+
+def _check_discretisation(case: Case) -> None:
+    options = case.discretisation
+    if options.cell_weighted and options.scheme != "quadrature":
+        raise CaseError(
+            "discretisation.cell_weighted scales points that are integration points; set "
+            'discretisation.scheme = "quadrature", or leave it out'
+        )
+    is_round = case.kinematics == Kinematics.AXISYMMETRIC
+    if options.scheme == "carriers":
+        if is_round and options.cells == "tri3":
+            raise CaseError(
+                'discretisation.cells is "tri3": its one integration point does not integrate the '
+                'hoop stress of a ring exactly; use "tri6", or the scheme "quadrature"'
+            )
+        return
+    least = 1 + (options.cells == "tri6") + is_round
+    if case.background_mesh.points_per_direction < least:
+        raise CaseError(
+            f"background_mesh.points_per_direction is "
+            f"{case.background_mesh.points_per_direction}, too few for points that are integration "
+            f"points of such cells; make it at least {least}"
+        )
 
 
 def _check_ground(case: Case) -> None:
@@ -66,7 +101,7 @@ def _check_geometry(case: Case) -> None:
             f"pile.half_width {pile.half_width:g} m (with background_mesh.rigid_zone) does not fit "
             f"into box.width {box.width:g} m; make the box wider"
         )
-    margin = 2.0 * pile.half_width
+    margin = pile.width
     if case.final_tip_depth + margin > box.depth:
         raise CaseError(
             f"pile.embedment {pile.embedment:g} m and installation.penetration "

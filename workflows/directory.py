@@ -28,14 +28,17 @@ VIEW_INSTALLED = "paraview/service_installed.vtu"
 VIEW_WISHED = "paraview/service_wished_in_place.vtu"
 
 INSTALL_KEYS = (
-    "ground", "pile", "interface", "box", "background_mesh", "installation", "numerics"
+    "kinematics", "ground", "pile", "interface", "box", "background_mesh", "discretisation",
+    "installation", "numerics",
 )  # fmt: skip
 """Sections of the case that decide the installed state."""
 
 HANDOFF_KEYS = (*INSTALL_KEYS, "handoff", "service.numerics")
 """Sections of the case that decide the handed-off state."""
 
-WISHED_KEYS = ("ground", "pile", "interface", "box", "installation", "handoff", "service")
+WISHED_KEYS = (
+    "kinematics", "ground", "pile", "interface", "box", "installation", "handoff", "service"
+)  # fmt: skip
 """Sections of the case that decide the wished-in-place model; of the installation, its depth."""
 
 SERVICE_KEYS = (*HANDOFF_KEYS, "service")

@@ -12,9 +12,12 @@ from typing import Any
 import meshio
 import numpy as np
 
-from install_mpm.material_points import cauchy_stress
+from install_mpm.material_points import cauchy_stress, plane_area
 from install_mpm.state_file import InstalledState
 from service_fe.results import ServiceResult
+
+VTK_NAMES = {3: "triangle", 6: "triangle6"}
+"""Names of cells by their number of nodes."""
 
 PARAVIEW_ORDER = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 
@@ -42,10 +45,11 @@ def export_background_mesh(path: Path, installed: InstalledState) -> None:
     corners = mesh.nodes[mesh.cell_nodes[:, :3]]
     first, second = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     area = 0.5 * np.abs(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])
-    filled = np.bincount(points.cell, weights=points.volume, minlength=len(area))
+    soil = plane_area(points, installed.kinematics)
+    filled = np.bincount(points.cell, weights=soil, minlength=len(area))
     data = {"fill": [filled / area]}
     moved = {"displacement": _in_3d(mesh.nodes - mesh.reference_nodes)}
-    cells = [("triangle6", mesh.cell_nodes)]
+    cells = [(VTK_NAMES[mesh.cell_nodes.shape[1]], mesh.cell_nodes)]
     _write(path, meshio.Mesh(_in_3d(mesh.nodes), cells, point_data=moved, cell_data=data))
 
 

@@ -54,15 +54,13 @@ def forecast(case: Case) -> Forecast:
     from install_mpm.ground import boundary_depths
     from install_mpm.mesh_generation import generate_background_mesh
 
-    layers = boundary_depths(case.ground)
-    mesh = generate_background_mesh(case.pile, case.box, case.background_mesh, layers)
+    layers, cells = boundary_depths(case.ground), CellType[case.discretisation.cells.upper()]
+    mesh = generate_background_mesh(case.pile, case.box, case.background_mesh, layers, cells)
     fe_mesh = make_mesh(
         case.pile, case.final_tip_depth, case.box, case.handoff, level_surface(), layers
     )
     heights = mesh.nodes[mesh.cell_nodes[:, :3], 1].mean(axis=1)
-    _, shares = sub_region_points(
-        reference_cell(CellType.TRI6), case.background_mesh.points_per_direction
-    )
+    _, shares = sub_region_points(reference_cell(cells), case.background_mesh.points_per_direction)
     n_points = int((heights < 0.0).sum()) * len(shares)
     dim = dimension(case.kinematics)
     dofs, fe_dofs = dim * len(mesh.nodes), dim * len(fe_mesh.nodes)

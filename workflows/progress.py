@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import (
@@ -17,6 +17,11 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from workflows.report_units import FORCE_UNIT
+
+if TYPE_CHECKING:
+    from workflows.case import Case
+
 Advance = Callable[[int, int, str], None]
 """Show that ``done`` of ``total`` steps are complete, with a short note."""
 
@@ -25,17 +30,18 @@ def no_progress(_done: int, _total: int, _note: str) -> None:
     """Show nothing."""
 
 
-def service_observer(n_programmes: int, advance: Advance) -> Callable[[Any], None]:
+def service_observer(case: Case, advance: Advance) -> Callable[[Any], None]:
     """Return an observer of the service stage that shows all programmes as one count.
 
     Each programme counts as 100, because its number of steps is not known before it starts.
     """
+    n_programmes, unit = len(case.service.programmes), FORCE_UNIT[case.kinematics]
     finished = 0
 
     def observe(progress: Any) -> None:
         nonlocal finished
         share = 100 * progress.step // progress.n_steps
-        note = f"{progress.programme}, {progress.head_load / 1e3:.0f} kN/m"
+        note = f"{progress.programme}, {progress.head_load / 1e3:.0f} {unit}"
         advance((100 * finished + share) // n_programmes, 100, note)
         finished += progress.step == progress.n_steps
 

@@ -6,12 +6,13 @@ from html import escape
 from pathlib import Path
 from string import Template
 
+from install_mpm.conventions import Kinematics
 from workflows.directory import REPORT, write_text
 from workflows.manifest import created_by
 from workflows.report_data import Results, read_results
 from workflows.report_sections import Section, sections
 from workflows.report_style import styled
-from workflows.report_units import shown
+from workflows.report_units import PER_LENGTH, shown
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -42,6 +43,8 @@ def page_html(results: Results, parts: list[Section]) -> str:
     template = Template((TEMPLATES / "report.html").read_text(encoding="utf-8"))
     return template.substitute(
         title=escape(results.case.title),
+        kinematics=results.case.kinematics.name.lower().replace("_", " "),
+        forces="forces for the w" + PER_LENGTH[results.case.kinematics][1:-1],
         subtitle=escape(_subtitle(results)),
         css=(TEMPLATES / "report.css").read_text(encoding="utf-8"),
         contents=" ".join(f'<a href="#{part.name}">{escape(part.title)}</a>' for part in parts),
@@ -56,7 +59,9 @@ def page_html(results: Results, parts: list[Section]) -> str:
 def _subtitle(results: Results) -> str:
     """Return the installation in one sentence."""
     pile, tip_depth = results.case.pile, float(results.installed.pile.tip_depth)
-    width, depth = shown(2.0 * pile.half_width, "m", 3), shown(tip_depth, "m", 3)
+    width, depth = shown(pile.width, "m", 3), shown(tip_depth, "m", 3)
+    is_round = results.case.kinematics == Kinematics.AXISYMMETRIC
+    what = f"A round pile {width} in diameter" if is_round else f"A pile {width} wide"
     if float(results.installed.pile.penetration) == 0.0:
-        return f"A pile {width} wide at {depth} depth, not moved."
-    return f"A pile {width} wide, jacked from {shown(pile.embedment, 'm', 3)} to {depth} depth."
+        return f"{what} at {depth} depth, not moved."
+    return f"{what}, jacked from {shown(pile.embedment, 'm', 3)} to {depth} depth."

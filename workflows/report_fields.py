@@ -15,8 +15,7 @@ from handoff.geostatic import VERTICAL
 from handoff.surface import height_at, surface_profile
 from install_mpm.geostatic import named_state
 from install_mpm.ground import GroundProfile, geostatic_stress
-from install_mpm.material_points import MaterialPoints
-from install_mpm.pile import SYMMETRY_FACTOR
+from install_mpm.material_points import MaterialPoints, plane_area
 from workflows.case import Case
 from workflows.report_style import INK, MUTED, PILE
 
@@ -37,7 +36,7 @@ class Window(NamedTuple):
 
 def window_of(case: Case) -> Window:
     """Return the surroundings of the pile: three widths beside it and two and a half below."""
-    width = SYMMETRY_FACTOR * case.pile.half_width
+    width = case.pile.width
     return Window(
         right=min(case.box.width, 3.5 * width),
         bottom=-min(case.box.depth, case.final_tip_depth + 2.5 * width),
@@ -47,7 +46,7 @@ def window_of(case: Case) -> Window:
 
 def tip_window(case: Case) -> Window:
     """Return the neighbourhood of the installed pile's tip, in the same proportions."""
-    window, width = window_of(case), SYMMETRY_FACTOR * case.pile.half_width
+    window, width = window_of(case), case.pile.width
     right = 1.4 * width
     height = right * (window.top - window.bottom) / window.right
     return Window(right, -case.final_tip_depth - 0.6 * height, -case.final_tip_depth + 0.4 * height)
@@ -63,9 +62,12 @@ def nearest_index(points: MaterialPoints, case: Case, window: Window) -> np.ndar
     z = np.arange(window.bottom + 0.5 * pixel, window.top, pixel)
     places = np.stack(np.meshgrid(x, z), axis=-1)
     distance, nearest = cKDTree(points.position).query(places)
-    surface = surface_profile(points, case.pile.half_width, case.handoff.size_at_pile)
+    size = np.sqrt(plane_area(points, case.kinematics))
+    surface = surface_profile(
+        points, case.pile.half_width, case.handoff.size_at_pile, case.kinematics
+    )
     is_soil = places[:, :, 1] < height_at(surface, places[:, :, 0])
-    is_soil &= distance <= REACH * np.sqrt(points.volume[nearest])
+    is_soil &= distance <= REACH * size[nearest]
     index: np.ndarray = np.where(is_soil, nearest, -1)
     return index
 

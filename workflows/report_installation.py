@@ -42,6 +42,7 @@ from workflows.report_style import (
     grid,
     panels,
 )
+from workflows.report_units import FORCE_UNIT
 
 BAND = 0.5
 """Thickness of the layers that make the deformation visible, over the pile's width."""
@@ -75,7 +76,7 @@ def draw_bands(
 ) -> None:
     """Draw mesh and points of ``state``, coloured in bands of ``initial_height`` (n,)."""
     draw_mesh(axes, state.background_mesh.nodes, state.background_mesh.cell_nodes[:, :3])
-    band = np.floor(-initial_height / (BAND * 2.0 * case.pile.half_width)) % 2.0
+    band = np.floor(-initial_height / (BAND * case.pile.width)) % 2.0
     dots = axes.scatter(
         *state.material_points.position.T,
         c=np.where(band, WISHED, SAND),
@@ -131,7 +132,7 @@ def force_against_depth(case: Case, history: History) -> Figure:
         here.plot(force / 1e3, penetration, color=colour, label=label)
     here.set_ylim(float(penetration[-1]), 0.0)
     here.set_xlim(left=min(0.0, float(history.crowd_force.min()) / 1e3))
-    here.set_xlabel("force on the whole pile (kN/m)")
+    here.set_xlabel(f"force on the whole pile ({FORCE_UNIT[case.kinematics]})")
     here.set_ylabel("penetration (mm)")
     depth = here.twinx()
     start = case.pile.embedment

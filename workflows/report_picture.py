@@ -39,6 +39,7 @@ from workflows.report_style import (
     png_of,
     styled,
 )
+from workflows.report_units import FORCE_UNIT
 
 
 def overview(results: Results) -> Figure:
@@ -80,7 +81,8 @@ def _draw_curves(axes: Any, results: Results) -> None:
                     label=label,
                 )
                 label = None
-    axes.set(xlabel="displacement, downward (mm)", ylabel="head load (kN/m)", title="in service")
+    unit = FORCE_UNIT[results.case.kinematics]
+    axes.set(xlabel="displacement, downward (mm)", ylabel=f"head load ({unit})", title="in service")
     axes.legend(loc="upper left")
     grid(axes)
 

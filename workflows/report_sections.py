@@ -8,9 +8,10 @@ from typing import NamedTuple
 from matplotlib.figure import Figure
 
 from workflows import report_handoff, report_installation, report_service, report_tables
+from workflows.case import Case
 from workflows.report_data import Results
 from workflows.report_html import code, details, figure
-from workflows.report_text import CAPTIONS, LIMITS, METHOD
+from workflows.report_text import CAPTIONS, LIMITS, METHOD, SHAPE_LIMITS
 from workflows.report_units import shown, significant
 
 
@@ -31,7 +32,7 @@ def sections(results: Results) -> list[Section]:
         Section("convergence", "Convergence", convergence_html(results)),
         Section("handoff", "Hand-over", handoff_html(results)),
         Section("service", "Service", service_html(results)),
-        Section("method", "Method and limits", METHOD + LIMITS),
+        Section("method", "Method and limits", METHOD + limits_html(results.case)),
         Section("provenance", "Provenance", provenance_html(results)),
     ]
 
@@ -57,9 +58,8 @@ def cards_html(results: Results) -> str:
     figures = results.summary["results"]
     installation = figures["installation"]
     depth = shown(installation["tip_depth_m"], "m", 3)
-    cards = [
-        (shown(installation["crowd_force_N"], "N"), f"installation force at {depth} tip depth")
-    ]
+    force = shown(installation["crowd_force_N"], "N", 4, results.case.kinematics)
+    cards = [(force, f"installation force at {depth} tip depth")]
     for name, programme in figures["service"].items():
         ratio = programme.get("ratio", {}).get("capacity")
         if ratio is not None:
@@ -113,16 +113,16 @@ def convergence_html(results: Results) -> str:
 def handoff_html(results: Results) -> str:
     """Return the pictures of the hand-over and the certificate."""
     case, installed, handed_off = results.case, results.installed, results.handed_off
-    certificate = results.certificate
+    certificate, kinematics = results.certificate, case.kinematics
     return "\n".join(
         [
             captioned("handed_off", report_handoff.stress_handed_over(case, installed, handed_off)),
             captioned("tractions", report_handoff.tractions(installed, handed_off)),
             "<h3>Certificate</h3>",
-            report_tables.certificate_table(certificate, with_limit=True),
+            report_tables.certificate_table(certificate, kinematics, with_limit=True),
             details(
                 "Figures for information",
-                report_tables.certificate_table(certificate, with_limit=False),
+                report_tables.certificate_table(certificate, kinematics, with_limit=False),
             ),
         ]
     )
@@ -143,6 +143,11 @@ def service_html(results: Results) -> str:
             text = caption.format(report_tables.spaced(name))
             parts.append(figure(f"mechanism_{number}", picture, text))
     return "\n".join(parts)
+
+
+def limits_html(case: Case) -> str:
+    """Return what limits the answer, the shape of the pile first."""
+    return LIMITS.format(shape=SHAPE_LIMITS[case.kinematics])
 
 
 def provenance_html(results: Results) -> str:

@@ -43,6 +43,7 @@ from workflows.report_style import (
     grid,
     panels,
 )
+from workflows.report_units import FORCE_UNIT
 
 STRAIN_NORM = Normalize(0.0, 10.0)
 """Plastic shear strains are shown up to 10 %."""
@@ -59,7 +60,9 @@ def curves(case: Case, service: ServiceResult, wished: ServiceResult) -> Figure:
         for model in (service, wished):
             _draw_curve(here, model.model, model.programme(result.programme.name), case)
         here.set(
-            xlabel="displacement, downward (mm)", ylabel="head load (kN/m)", title=_title(result)
+            xlabel="displacement, downward (mm)",
+            ylabel=f"head load ({FORCE_UNIT[case.kinematics]})",
+            title=_title(result),
         )
         here.axhline(0.0, color=MUTED, linewidth=0.6)
         grid(here)
@@ -86,7 +89,7 @@ def _draw_curve(axes: Any, model: str, result: ProgrammeResult, case: Case) -> N
     )
     if not isinstance(result.programme, Displace) or result.programme.start != "released":
         return
-    width = 2.0 * case.pile.half_width
+    width = case.pile.width
     found = characteristics(curve, width)
     direction = np.sign(curve.displacement[-1])
     if found.capacity is not None:
@@ -99,7 +102,7 @@ def _draw_curve(axes: Any, model: str, result: ProgrammeResult, case: Case) -> N
 
 def continuity(case: Case, installed: InstalledState, service: ServiceResult) -> Figure | None:
     """Return the installation force and how the pushed-on pile continues it, None if it cannot."""
-    width, history = 2.0 * case.pile.half_width, installed.history
+    width, history = case.pile.width, installed.history
     pushed = [
         result
         for result in service.programmes
@@ -129,7 +132,10 @@ def continuity(case: Case, installed: InstalledState, service: ServiceResult) ->
     here.set_xlim(-4.0 * reach, 1.1 * reach)
     loads = [history.crowd_force, *(result.curve.head_load for result in pushed)]
     here.set_ylim(0.0, 1.3 * max(float(load.max()) for load in loads) / 1e3)
-    here.set(xlabel="displacement since the end of jacking (mm)", ylabel="force (kN/m)")
+    here.set(
+        xlabel="displacement since the end of jacking (mm)",
+        ylabel=f"force ({FORCE_UNIT[case.kinematics]})",
+    )
     here.legend(loc="lower left")
     grid(here)
     return figure

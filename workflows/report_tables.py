@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any, get_args, get_type_hints
 
-from install_mpm.conventions import Unit
+from install_mpm.conventions import Kinematics, Unit
 from service_fe.options import Displace, Programme
 from workflows.case import Case
 from workflows.report_data import Results
@@ -21,7 +21,10 @@ CURVE_FIGURES = {
     "tangent_capacity": ("capacity where the tangents meet", "N"),
 }
 
-SECTIONS = ("ground", "pile", "interface", "box", "background_mesh", "installation", "handoff")
+SECTIONS = (
+    "ground", "pile", "interface", "box", "background_mesh", "discretisation", "installation",
+    "handoff",
+)  # fmt: skip
 """Sections of the case that the table shows; the rest stands in the text of the case."""
 
 NAMES = {"k0": "K₀", "youngs_modulus": "Young's modulus", "poissons_ratio": "Poisson's ratio"}
@@ -32,7 +35,7 @@ Row = list[str | Cell]
 
 def headline_table(results: Results) -> str:
     """Return the table of headline results: installation, service of both models, continuity."""
-    figures = results.summary["results"]
+    figures, kinematics = results.summary["results"], results.case.kinematics
     head: Row = ["", *(number(text) for text in ("installed", "wished in place", "ratio"))]
     rows: list[Row] = [group_row("installation")]
     installation = figures["installation"]
@@ -41,9 +44,9 @@ def headline_table(results: Results) -> str:
         ("base_force_N", "soil reaction on the base"),
         ("shaft_force_N", "soil reaction on the shaft"),
     ):
-        rows.append([text, number(shown(installation[key], "N")), "", ""])
+        rows.append([text, number(shown(installation[key], "N", 4, kinematics)), "", ""])
     for name, programme in figures["service"].items():
-        rows.extend(_programme_rows(name, programme))
+        rows.extend(_programme_rows(name, programme, kinematics))
     for name, shares in figures["continuity"].items():
         rows.append(group_row(f"continuity: {spaced(name)}"))
         for key, share in shares.items():
@@ -52,7 +55,9 @@ def headline_table(results: Results) -> str:
     return table(head, rows)
 
 
-def _programme_rows(name: str, programme: dict[str, dict[str, Any]]) -> Iterator[Row]:
+def _programme_rows(
+    name: str, programme: dict[str, dict[str, Any]], kinematics: Kinematics
+) -> Iterator[Row]:
     """Yield the rows of one programme of the service stage."""
     if "head_load_before_N" in programme["installed"]:
         yield group_row(spaced(name))
@@ -61,11 +66,8 @@ def _programme_rows(name: str, programme: dict[str, dict[str, Any]]) -> Iterator
             ("displacement_m", "displacement, downward", "mm"),
         ):
             scale = 1e3 if unit == "mm" else 1.0
-            yield [
-                text,
-                *(number(shown(scale * programme[model][key], unit, 3)) for model in MODELS),
-                "",
-            ]
+            values = [scale * programme[model][key] for model in MODELS]
+            yield [text, *(number(shown(value, unit, 3, kinematics)) for value in values), ""]
     elif "ratio" in programme:
         yield group_row(spaced(name))
         for key, (text, unit) in CURVE_FIGURES.items():
@@ -73,7 +75,7 @@ def _programme_rows(name: str, programme: dict[str, dict[str, Any]]) -> Iterator
             ratio = programme["ratio"][key]
             yield [
                 text,
-                *(number(shown(value, unit)) for value in values),
+                *(number(shown(value, unit, 4, kinematics)) for value in values),
                 number("–" if ratio is None else significant(ratio, 3)),
             ]
 
@@ -121,7 +123,9 @@ def _option_rows(options: Any) -> Iterator[Row]:
         yield [NAMES.get(field.name, spaced(field.name)), number(plain(value, unit))]
 
 
-def certificate_table(certificate: dict[str, dict[str, Any]], *, with_limit: bool) -> str:
+def certificate_table(
+    certificate: dict[str, dict[str, Any]], kinematics: Kinematics, *, with_limit: bool
+) -> str:
     """Return the figures of the certificate that have a limit, or those that have none."""
     rows: list[Row] = []
     for name, figure in certificate.items():
@@ -130,7 +134,7 @@ def certificate_table(certificate: dict[str, dict[str, Any]], *, with_limit: boo
             continue
         row: Row = [
             figure["meaning"],
-            number(shown(figure["value"], unit, 3)),
+            number(shown(figure["value"], unit, 3, kinematics)),
         ]
         if with_limit:
             row += [number(plain(limit, unit)), badge(figure["is_met"])]

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from install_mpm.conventions import Kinematics
+
 CAPTIONS = {
     "force": """Force that the rig applies while the pile is jacked, and the soil's upward reaction
-        on base and shaft. Whole pile, per metre run.""",
+        on base and shaft, of the whole pile.""",
     "points": """Background mesh and material points. The bands were level before the installation.
         The mesh follows the pile, the points follow the soil.""",
     "stress": """What the installation left in the ground: change of mean pressure (compression
@@ -48,11 +50,18 @@ that no installation has disturbed. The difference between the two is the effect
 installation.</p>
 """
 
+SHAPE_LIMITS = {
+    Kinematics.PLANE_STRAIN: """Plane strain: the pile is a long wall of width B, not a round pile.
+        Factors for shape do not follow from it. Forces are per metre run.""",
+    Kinematics.AXISYMMETRIC: """Axisymmetry: the pile is round with diameter B, and nothing acts
+        sideways or turns it. Forces are for the whole pile.""",
+}
+"""What the kinematics of a case mean for its results."""
+
 LIMITS = """
 <h3>What limits the answer</h3>
 <ul>
-<li>Plane strain: the pile is a long wall of width B, not a round pile. Factors for shape do not
-follow from it.</li>
+<li>{shape}</li>
 <li>Undrained, total stress, rate-independent: no pore pressure, no consolidation (set-up), no
 cyclic degradation. Strength does not change by remoulding.</li>
 <li>The installation starts with a pile that is wished in place at its first depth; only the

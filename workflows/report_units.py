@@ -3,21 +3,44 @@
 from __future__ import annotations
 
 import math
+from enum import Enum
 from typing import Any
+
+from install_mpm.conventions import Kinematics
 
 DISPLAY = {
     "m": (1.0, "m"),
-    "m^3": (1.0, "m³/m"),
-    "kg": (1e-3, "t/m"),
-    "N": (1e-3, "kN/m"),
-    "N/m": (1e-6, "kN/m per mm"),
     "N/m^3": (1e-3, "kN/m³"),
     "Pa": (1e-3, "kPa"),
     "Pa/m": (1e-3, "kPa/m"),
     "rad": (180.0 / math.pi, "°"),
 }
-"""Factor and name of the display unit of each SI unit; forces and volumes are per metre run."""
+"""Factor and name of the display unit of each SI unit."""
 
+EXTENSIVE = {
+    Kinematics.PLANE_STRAIN: {
+        "m^3": (1.0, "m³/m"),
+        "kg": (1e-3, "t/m"),
+        "N": (1e-3, "kN/m"),
+        "N/m": (1e-6, "kN/m per mm"),
+    },
+    Kinematics.AXISYMMETRIC: {
+        "m^3": (1.0, "m³"),
+        "kg": (1e-3, "t"),
+        "N": (1e-3, "kN"),
+        "N/m": (1e-6, "kN/mm"),
+    },
+}
+"""The same for what is counted per metre run of a wall, or for the whole of a round pile."""
+
+FORCE_UNIT = {kinematics: units["N"][1] for kinematics, units in EXTENSIVE.items()}
+"""Display unit of a force."""
+
+PER_LENGTH = {
+    Kinematics.PLANE_STRAIN: "Whole pile, per metre run.",
+    Kinematics.AXISYMMETRIC: "Whole round pile.",
+}
+"""What forces are for, in words."""
 
 ROUND_OFF = 1e-9
 """A quantity with a unit is shown as zero below this, in display units."""
@@ -25,11 +48,16 @@ ROUND_OFF = 1e-9
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def shown(value: float | None, unit: str = "", digits: int = 4) -> str:
+def shown(
+    value: float | None,
+    unit: str = "",
+    digits: int = 4,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+) -> str:
     """Return ``value`` in SI ``unit`` as text with its display unit; a dash if there is none."""
     if value is None:
         return "–"
-    factor, name = DISPLAY.get(unit, (1.0, unit))
+    factor, name = (DISPLAY | EXTENSIVE[kinematics]).get(unit, (1.0, unit))
     scaled = factor * value
     if unit and abs(scaled) < ROUND_OFF:
         scaled = 0.0
@@ -49,6 +77,8 @@ def significant(value: float, digits: int = 4) -> str:
 
 def plain(value: Any, unit: str = "") -> str:
     """Return an option of a case as text: numbers without trailing zeros, words as they are."""
+    if isinstance(value, Enum):
+        value = value.name.lower()
     if isinstance(value, bool) or not isinstance(value, int | float):
         return str(value).replace("_", " ")
     factor, name = DISPLAY.get(unit, (1.0, unit))

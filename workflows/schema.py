@@ -11,6 +11,7 @@ import types
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass
 from difflib import get_close_matches
+from enum import Enum
 from functools import cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
@@ -124,7 +125,17 @@ def _value(hint: Any, value: object, key: str) -> Any:
         return tuple(build(item, entry, f"{key}[{n}]") for n, entry in enumerate(value, 1))
     elif is_dataclass(alternatives_of(hint)[0]):
         return build(hint, value, key)
+    elif is_enumeration(hint):
+        return _member(hint, value, key)
     return _checked(hint, value, key, unit)
+
+
+def _member(kind: type[Enum], value: object, key: str) -> Enum:
+    """Return the member of an enumeration that ``value`` names."""
+    members = {member.name.lower(): member for member in kind}
+    if not isinstance(value, str) or value not in members:
+        raise CaseError(f"{key} is {value!r}, but it must be {range_of(kind)}")
+    return members[value]
 
 
 def _checked(hint: Any, value: object, key: str, unit: Unit | None) -> Any:
@@ -189,6 +200,8 @@ def range_of(hint: Any) -> str:
     bare = get_args(hint)[0] if get_origin(hint) is Annotated else hint
     if get_origin(bare) is Literal:
         return "one of " + ", ".join(f'"{value}"' for value in get_args(bare))
+    if is_enumeration(bare):
+        return "one of " + ", ".join(f'"{member.name.lower()}"' for member in bare)
     return " and ".join(limits)
 
 
@@ -205,6 +218,11 @@ def alternatives_of(hint: Any) -> tuple[Any, ...]:
     """Return the members of a union, or the one type that ``hint`` is."""
     bare = get_args(hint)[0] if get_origin(hint) is Annotated else hint
     return get_args(bare) if get_origin(bare) in (Union, types.UnionType) else (bare,)
+
+
+def is_enumeration(hint: Any) -> bool:
+    """Return whether a key takes the name of a member of an enumeration."""
+    return isinstance(hint, type) and issubclass(hint, Enum)
 
 
 def is_tag(hint: Any) -> bool:
@@ -240,6 +258,8 @@ def table_of(record: Any) -> Table:
 def _plain(value: Any, hint: Any) -> Any:
     if is_dataclass(value):
         return table_of(value)
+    if isinstance(value, Enum):
+        return value.name.lower()
     if isinstance(value, tuple):
         return [_plain(entry, item_type(hint)) for entry in value]
     unit = unit_of(hint)

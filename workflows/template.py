@@ -13,6 +13,7 @@ from workflows.schema import (
     alternatives_of,
     choose,
     hints_of,
+    is_enumeration,
     is_required,
     is_tag,
     item_type,
@@ -30,7 +31,7 @@ WIDTH = 100
 HEADING = """\
 # A case of screwpile. Every key is listed; those with a default may be left out.
 # A quantity is a text with its unit, any unit of the right dimension: "20 kPa", "0.5 m", "24 deg".
-# Plane strain, half model x >= 0, z up, ground surface z = 0; displacements positive downward.
+# Half model x >= 0 (or r >= 0), z up, ground surface z = 0; displacements positive downward.
 
 """
 
@@ -124,7 +125,7 @@ def _defaults(record: type) -> dict[str, Any]:
 def _facts(hint: Any, default: Any, has_default: bool) -> str:
     unit = unit_of(hint)
     facts = [unit.symbol if unit else "", range_of(hint)]
-    if has_default:
+    if has_default and not is_enumeration(hint):
         facts.append(f"default {default}")
     return ", ".join(fact for fact in facts if fact)
 

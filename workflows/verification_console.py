@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
@@ -15,7 +16,8 @@ from workflows.progress import Reporter
 from workflows.verification import registry
 from workflows.verification.parameters import parameters_of, read_assignments
 from workflows.verification.problem import Problem
-from workflows.verification.runner import Verified, run_problems
+from workflows.verification.runner import Run, Verified, run_problems
+from workflows.verification_case import SUFFIX, read_problem_case
 from workflows.verification_numbers import HEADINGS, cells, count_text, inputs_text
 
 WIDTH = 110
@@ -46,13 +48,29 @@ def choose(identifiers: Sequence[str], is_quick: bool) -> list[Problem]:
     return chosen
 
 
+def runs_of(arguments: Sequence[str], is_quick: bool) -> list[Run]:
+    """Return what the arguments name: problems, and case files (``.toml``) that describe one.
+
+    Raises
+    ------
+    CaseError
+        If a problem or a file is unknown, or a file is no case of a problem.
+    """
+    cases = [read_problem_case(Path(text)) for text in arguments if text.endswith(SUFFIX)]
+    names = [text for text in arguments if not text.endswith(SUFFIX)]
+    if cases and is_quick:
+        raise CaseError("--quick chooses among problems; leave it out with case files")
+    problems = choose(names, is_quick) if names or not cases else []
+    return cases + [Run(problem, {}, problem.identifier, problem.title) for problem in problems]
+
+
 def verify_problems(
     arguments: Iterable[str], overrides: Iterable[str], is_quick: bool, files: Iterable[Path | None]
 ) -> list[Verified]:
     """Run the problems that the command line names and return their results.
 
-    ``arguments`` are identifiers, and assignments that follow the first one of ``--set``; ``files``
-    are to be written later.
+    ``arguments`` are identifiers or case files, and assignments that follow the first one of
+    ``--set``; ``files`` are to be written later.
 
     Raises
     ------
@@ -61,10 +79,12 @@ def verify_problems(
     """
     arguments, assignments = list(arguments), list(overrides)
     assignments += [text for text in arguments if "=" in text]
-    chosen = choose([text for text in arguments if "=" not in text], is_quick)
+    chosen = runs_of([text for text in arguments if "=" not in text], is_quick)
     if assignments and len(chosen) != 1:
         raise CaseError("--set changes one problem; name it, e.g. screwpile verify PA7 --set b=2")
-    values = read_assignments(chosen[0], assignments) if assignments else {}
+    if assignments:
+        values = read_assignments(chosen[0].problem, assignments)
+        chosen = [replace(chosen[0], values={**chosen[0].values, **values})]
     for file in files:
         if file is not None:
             _make_folder(file)
@@ -72,7 +92,7 @@ def verify_problems(
     doing = f"{len(chosen)} reference problem{'s' if len(chosen) > 1 else ''}"
     with reporter.stage("verify", doing) as advance:
         results = run_problems(
-            chosen, values, advance, lambda result: print_result(result, reporter.console)
+            chosen, advance, lambda result: print_result(result, reporter.console)
         )
     reporter.say(count_text(results))
     return results
@@ -92,7 +112,7 @@ def print_result(result: Verified, console: Console) -> None:
     verdict = "met" if result.is_met else "FAILED"
     console.print(
         Text.assemble(
-            (f"{result.problem.identifier}  {result.problem.title}: ", "bold"),
+            (f"{result.name}  {result.title}: ", "bold"),
             (verdict, STYLES[result.is_met]),
             f"  ({result.seconds:.1f} s)",
         )

@@ -30,7 +30,8 @@ def _problem(result: Verified) -> dict[str, Any]:
     outcome = result.outcome
     return {
         "id": result.problem.identifier,
-        "title": result.problem.title,
+        "title": result.title,
+        "case": result.case_name or None,
         "is_met": result.is_met,
         "failure": result.failure or None,
         "seconds": round(result.seconds, 3),

@@ -43,7 +43,7 @@ def inputs_text(result: Verified) -> str:
 def count_text(results: list[Verified]) -> str:
     """Return how many problems are within tolerance."""
     n_met = sum(result.is_met for result in results)
-    failed = ", ".join(result.problem.identifier for result in results if not result.is_met)
+    failed = ", ".join(result.name for result in results if not result.is_met)
     ending = f"; not met: {failed}" if failed else ""
     plural = "s" if len(results) > 1 else ""
     return f"{n_met} of {len(results)} reference problem{plural} within tolerance{ending}"

@@ -47,6 +47,7 @@ def write_report(results: list[Verified], path: Path) -> None:
             picture.write_bytes(png_of(draw(result.outcome.series)))
             titles = "; ".join(_title(series) for series in result.outcome.series)
             section += f"\n![{titles}]({picture.relative_to(path.parent).as_posix()})\n"
+        section += _pictures(result, pictures, path.parent)
         sections.append(section)
     minutes = MINUTES * math.ceil(sum(result.seconds for result in results) / 60.0 / MINUTES)
     page = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
@@ -58,20 +59,31 @@ def write_report(results: list[Verified], path: Path) -> None:
     write_text(path, page)
 
 
+def _pictures(result: Verified, folder: Path, page_folder: Path) -> str:
+    """Write the pictures of states of a problem into ``folder``; return the links to them."""
+    lines = ""
+    for picture in result.outcome.pictures if result.outcome else ():
+        file = folder / f"{anchor(result)}-{picture.name}.png"
+        with styled():
+            file.write_bytes(png_of(picture.draw()))
+        lines += f"\n![{picture.caption}]({file.relative_to(page_folder).as_posix()})\n"
+    return lines
+
+
 def anchor(result: Verified) -> str:
-    """Return the name of a problem in links and files."""
-    return result.problem.identifier.lower()
+    """Return the name of a problem or case in links and files."""
+    return result.name.lower()
 
 
 def _overview(result: Verified) -> str:
     """Return the row of a problem: its check that comes closest to the tolerance."""
-    link = f"[{result.problem.identifier}](#{anchor(result)})"
+    link = f"[{result.name}](#{anchor(result)})"
     verdict = "met" if result.is_met else "**FAILED**"
     worst = max(result.checks, key=_use_of_tolerance, default=None)
     if worst is None:
-        return f"| {link} | {result.problem.title} | not solved | | | {verdict} |"
+        return f"| {link} | {result.title} | not solved | | | {verdict} |"
     quantity, _, _, error, tolerance, _ = map(_escaped, cells(worst))
-    return f"| {link} | {result.problem.title} | {quantity} | {error} | {tolerance} | {verdict} |"
+    return f"| {link} | {result.title} | {quantity} | {error} | {tolerance} | {verdict} |"
 
 
 def _use_of_tolerance(check: Check) -> float:
@@ -86,7 +98,7 @@ def _section(result: Verified) -> str:
     lines = [
         f'<a id="{anchor(result)}"></a>',
         "",
-        f"### {result.problem.identifier}: {result.problem.title}",
+        f"### {result.name}: {result.title}",
         "",
         f"{_statement(result)} (`{_source(result)}`)",
         "",

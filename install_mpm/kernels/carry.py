@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from install_mpm._jit import jit
-from install_mpm.cells import shape_functions
 
 
 @jit
@@ -105,16 +104,14 @@ def vertex_fill(
 
 
 @jit
-def body_force(cell_type, cell_nodes, points, gravity, force):
+def body_force(cell_nodes, points, gravity, force):
     """Add the weight of the integration points to the nodal ``force`` (n_nodes, dim) in N."""
     n_nodes = cell_nodes.shape[1]
     vertical = force.shape[1] - 1
-    values = np.empty(n_nodes)
     for c in range(cell_nodes.shape[0]):
         for q in range(points.cell_start[c], points.cell_start[c + 1]):
             weight = points.density[q] * points.volume[q] * gravity
             if weight == 0.0:
                 continue
-            shape_functions(cell_type, points.reference_coordinates[q], values)
             for a in range(n_nodes):
-                force[cell_nodes[c, a], vertical] -= weight * values[a]
+                force[cell_nodes[c, a], vertical] -= weight * points.shape_values[q, a]

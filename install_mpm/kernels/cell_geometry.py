@@ -13,28 +13,27 @@ from install_mpm.kernels.gradients import hoop_gradients, shape_gradients
 @parallel_jit
 def cell_geometry(
     cell_type, cell_nodes, nodes, integration_coordinates, reference_volumes, is_axisymmetric,
-    gradients, hoop, volume, height,
+    values, gradients, hoop, volume, height,
 ):  # fmt: skip
     """Fill geometry at the integration points of all cells, first axes (n_cells, n_ip).
 
-    Filled: shape ``gradients`` (..., n_nodes, dim) in 1/m, ``hoop`` gradients (..., n_nodes) in
-    1/m, ``volume`` in m^3 and ``height`` in m.  ``reference_volumes`` (n_ip,) are the weights of
-    the rule on the reference cell.
+    Filled: shape ``values`` (..., n_nodes), shape ``gradients`` (..., n_nodes, dim) in 1/m,
+    ``hoop`` gradients (..., n_nodes) in 1/m, ``volume`` in m^3 and ``height`` in m.
+    ``reference_volumes`` (n_ip,) are the weights of the rule on the reference cell.
     """
     n_cells, n_nodes = cell_nodes.shape
     for chunk in prange(CHUNKS):
         reference = np.empty((n_nodes, nodes.shape[1]))
-        values = np.empty(n_nodes)
         for c in range(chunk * n_cells // CHUNKS, (chunk + 1) * n_cells // CHUNKS):
             for q in range(integration_coordinates.shape[0]):
                 xi = integration_coordinates[q]
                 volume[c, q] = reference_volumes[q] * point_geometry(
-                    cell_type, xi, nodes, cell_nodes[c], is_axisymmetric, reference, values,
+                    cell_type, xi, nodes, cell_nodes[c], is_axisymmetric, reference, values[c, q],
                     gradients[c, q], hoop[c, q],
                 )  # fmt: skip
                 height[c, q] = 0.0
                 for a in range(n_nodes):
-                    height[c, q] += values[a] * nodes[cell_nodes[c, a], nodes.shape[1] - 1]
+                    height[c, q] += values[c, q, a] * nodes[cell_nodes[c, a], nodes.shape[1] - 1]
 
 
 @jit

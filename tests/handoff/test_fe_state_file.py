@@ -18,6 +18,7 @@ from handoff.fe_state_file import (
     write_handed_off_state,
 )
 from install_mpm.record import StateFileError
+from install_mpm.seal import seal
 
 
 @pytest.fixture
@@ -124,6 +125,7 @@ def replace(name, value):
 def test_damaged_file_is_named_in_one_sentence(path, damage, words):
     with h5py.File(path, "r+") as file:
         damage(file)
+    seal(path)
     with pytest.raises(StateFileError, match=words) as error:
         read_handed_off_state(path)
     assert str(error.value).startswith(str(path))

@@ -5,6 +5,7 @@ import pytest
 
 from handoff.state_transfer import state_map
 from handoff.synthetic import airy_stress, distance_to_pile, synthetic_errors
+from install_mpm.conventions import Kinematics
 
 
 def test_airy_field_is_free_of_divergence(site):
@@ -51,3 +52,25 @@ def test_error_falls_with_the_density_of_points(site, build):
 def test_distance_to_the_pile_is_zero_on_it_and_diagonal_at_the_corner(site):
     places = np.array([[0.5, -1.0], [0.2, -2.0], [0.8, -2.4], [1.5, -1.0]])
     assert distance_to_pile(site.pile, 2.0, places) == pytest.approx([0.0, 0.0, 0.5, 1.0])
+
+
+def test_axisymmetric_field_balances_and_is_regular_on_the_axis(site):
+    """d s_rr/dr + d s_rz/dz + (s_rr - s_hoop)/r = 0, d s_rz/dr + d s_zz/dz + s_rz/r = 0."""
+    positions = np.random.default_rng(0).uniform((0.1, -4.0), (2.0, -1.0), size=(50, 2))
+    step = 1e-4
+
+    def field(places):
+        return airy_stress(site.ground, site.pile, 2.0, places, Kinematics.AXISYMMETRIC)
+
+    along_r, along_z = (
+        (field(positions + offset) - field(positions - offset)) / (2.0 * step)
+        for offset in step * np.eye(2)
+    )
+    stress, radius = field(positions), positions[:, 0]
+    radial = along_r[:, 0, 0] + along_z[:, 0, 1] + (stress[:, 0, 0] - stress[:, 2, 2]) / radius
+    axial = along_r[:, 0, 1] + along_z[:, 1, 1] + stress[:, 0, 1] / radius
+    scale = np.abs(along_r).max()
+    assert np.abs(radial).max() < 1e-6 * scale
+    assert np.abs(axial).max() < 1e-6 * scale
+    near, nearer = field(np.array([[1e-3, -2.5], [1e-4, -2.5]]))
+    np.testing.assert_allclose(near, nearer, atol=1e-4 * 20e3)

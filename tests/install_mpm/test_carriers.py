@@ -205,7 +205,7 @@ def test_weight_of_the_soil_hangs_on_the_nodes(mesh, clay_ground, rng):
     points = scattered(mesh, clay_ground, rng)
     quadrature, _, _, geometry = carried(points, mesh, clay_ground)
     force = np.zeros_like(mesh.nodes)
-    body_force(CELL.cell_type, mesh.cell_nodes, quadrature, GRAVITY, force)
+    body_force(mesh.cell_nodes, quadrature, GRAVITY, force)
     assert not force[:, 0].any()
     assert -force[:, 1].sum() == pytest.approx(18e3 * geometry.volume.sum(), rel=1e-13)
     centre = np.einsum("c,cvi->i", geometry.volume, mesh.nodes[mesh.cell_nodes[:, :3]]) / 3.0

@@ -58,6 +58,7 @@ def integration_points(mesh, rng, soil, *, random_start=True, kinematics=Kinemat
     return IntegrationPoints(
         cell_start=np.arange(n_cells + 1) * 3,
         reference_coordinates=np.tile(cell.integration_coordinates, (n_cells, 1)),
+        shape_values=geometry.shape_values.reshape(n_points, 6),
         shape_gradients=geometry.shape_gradients.reshape(n_points, 6, 2),
         hoop_gradients=geometry.hoop_gradients.reshape(n_points, 6),
         volume=geometry.integration_volume.ravel()

@@ -13,7 +13,6 @@ from install_mpm.interface import global_traction, reaction
 from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.mesh_motion import translate
 from install_mpm.pile import (
-    SYMMETRY_FACTOR,
     WHOLE_PILE,
     Pile,
     PilePart,
@@ -135,7 +134,7 @@ def test_normals_point_from_soil_to_pile_and_tangents_are_turned_left():
 def test_weight_of_the_modelled_half():
     pile = Pile(half_width=0.5, embedment=2.0, unit_weight=20e3)
     assert buried_weight(pile, 3.0) == pytest.approx(30e3)
-    assert SYMMETRY_FACTOR == 2.0
+    assert WHOLE_PILE[Kinematics.PLANE_STRAIN] == 2.0
 
 
 def test_weight_of_a_round_pile():

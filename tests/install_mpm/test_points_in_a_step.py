@@ -10,11 +10,12 @@ from install_mpm.cell_fill import cell_geometry, fill_cells
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
+from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
 from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.pile_surface import initial_interface, pile_elements
 from install_mpm.seeding import seed_points
-from install_mpm.step import LEVEL_FILL, locate, switch_on
+from install_mpm.step import LEVEL_FILL, switch_on
 
 
 def with_log_of(tensor):

@@ -14,6 +14,7 @@ from install_mpm.conventions import Kinematics, conventions_hash
 from install_mpm.history import History, append, empty_history
 from install_mpm.interface import InterfacePoints
 from install_mpm.record import Field, StateFileError, describe, fields_of, read_record, write_record
+from install_mpm.seal import MARK, USER_BLOCK, open_state_file, seal
 from install_mpm.seeding import seed_points
 from install_mpm.state_file import (
     FORMAT,
@@ -178,6 +179,7 @@ DATASET_FAULTS = {
 def test_faulty_dataset_is_an_error_that_names_its_place(fault, path):
     with h5py.File(path, "r+") as file:
         fault(file)
+    seal(path)
     with pytest.raises(StateFileError) as error:
         read_installed_state(path)
     message = str(error.value)
@@ -229,6 +231,7 @@ def test_wrong_header_is_an_error_that_names_it(fault, path):
     change, expected = HEADER_FAULTS[fault]
     with h5py.File(path, "r+") as file:
         change(file)
+    seal(path)
     with pytest.raises(StateFileError) as error:
         read_installed_state(path)
     assert str(error.value).startswith(f"{path}: ")
@@ -266,10 +269,11 @@ def test_unreadable_data_is_an_error(path):
         del points["volume"]
         dataset = points.create_dataset("volume", data=data, chunks=(32,), fletcher32=True)
         dataset.attrs["unit"] = "m^3"
-        offset = dataset.id.get_chunk_info(0).byte_offset
+        offset = dataset.id.get_chunk_info(0).byte_offset + file.userblock_size
     content = bytearray(path.read_bytes())
     content[offset : offset + 8] = b"\xff" * 8
     path.write_bytes(content)
+    seal(path)
     with pytest.raises(StateFileError, match="/material_points/volume cannot be read"):
         read_installed_state(path)
 
@@ -347,3 +351,44 @@ def test_empty_history_fits_its_description(tmp_path):
         write_record(file.create_group("history"), empty_history())
         result = read_record(file["history"], History)
     assert all(len(array) == 0 for array in result)
+
+
+def test_damaged_bytes_never_raise_anything_but_one_sentence(path, tmp_path):
+    """Every byte of the first kilobytes, where the structure is, and others at random."""
+    whole = path.read_bytes()
+    rng = np.random.default_rng(7)
+    places = np.concatenate([np.arange(0, 4000, 13), rng.integers(0, len(whole), 300)])
+    damaged = tmp_path / "damaged.h5"
+    for place in places[(places < len(MARK)) | (places >= USER_BLOCK)]:
+        content = bytearray(whole)
+        content[place] ^= int(rng.integers(1, 256))
+        damaged.write_bytes(bytes(content))
+        if place < len(MARK):  # no checksum any more; the content is whole
+            read_installed_state(damaged)
+            continue
+        with pytest.raises(StateFileError, match="does not match its checksum"):
+            read_installed_state(damaged)
+
+
+def test_other_readers_see_an_ordinary_file_and_files_without_checksum_are_read(path, tmp_path):
+    with h5py.File(path) as file:
+        assert file.userblock_size == USER_BLOCK
+        with h5py.File(tmp_path / "old.h5", "w") as old:
+            for name in file:
+                file.copy(name, old)
+            old.attrs.update(file.attrs)
+    read_installed_state(tmp_path / "old.h5")
+
+
+def test_what_the_library_raises_becomes_one_sentence(path):
+    with pytest.raises(StateFileError, match=r"damaged \(KeyError"), open_state_file(path) as file:
+        file["no such group"]
+
+
+def test_file_from_before_a_field_was_added_is_read_with_its_default(path):
+    with h5py.File(path, "r+") as file:
+        del file["history/remesh_stress_change"]
+    seal(path)
+    history = read_installed_state(path).history
+    assert np.isnan(history.remesh_stress_change).all()
+    assert history.remesh_stress_change.shape == history.penetration.shape

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from install_mpm.record import StateFileError
+from install_mpm.seal import seal
 from install_mpm.state_file import case_hash
 from service_fe.options import Displace, Release
 from service_fe.result_file import read_service_result, write_service_result
@@ -56,6 +57,7 @@ def test_nothing_partial_is_left(path):
 def damage(path, change):
     with h5py.File(path, "r+") as file:
         change(file)
+    seal(path)
 
 
 @pytest.mark.parametrize(

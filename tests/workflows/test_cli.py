@@ -10,6 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
+from install_mpm.seal import seal
 from workflows import cli
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -86,16 +87,19 @@ def truncate(path):
 def wrong_version(path):
     with h5py.File(path, "r+") as file:
         file.attrs["version"] = 99
+    seal(path)
 
 
 def missing_dataset(path):
     with h5py.File(path, "r+") as file:
         del file["material_points/mass"]
+    seal(path)
 
 
 def nan_stress(path):
     with h5py.File(path, "r+") as file:
         file["material_points/kirchhoff_stress"][3, 1, 1] = np.nan
+    seal(path)
 
 
 def other_case(path):
@@ -106,6 +110,7 @@ def other_case(path):
         text = file["case"].attrs["toml"].replace('"20000 Pa"', '"30000 Pa"')
         file["case"].attrs["toml"] = text
         file.attrs["case_sha256"] = case_hash(text)
+    seal(path)
 
 
 DAMAGES = {
@@ -247,3 +252,30 @@ def test_an_unexpected_error_keeps_its_traceback(monkeypatch):
     monkeypatch.setattr(sys, "argv", ["screwpile", "check", str(QUICK)])
     with pytest.raises(ZeroDivisionError):
         cli.main()
+
+
+@pytest.mark.parametrize("has_checkpoint", [True, False])
+def test_interrupted_installation_says_that_it_can_go_on(
+    has_checkpoint, tmp_path, monkeypatch, capsys
+):
+    def interrupted(*_arguments, **_options):
+        if has_checkpoint:
+            (tmp_path / "installed.checkpoint.h5").touch()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("workflows.runner.run_case", interrupted)
+    assert screwpile(monkeypatch, "run", QUICK, "-o", tmp_path) == 130
+    errors = capsys.readouterr().err
+    assert ("--resume" in errors) == has_checkpoint
+    assert "screwpile: stopped" in errors
+
+
+def test_interrupted_verification_says_nothing_of_installations(monkeypatch, capsys):
+    def interrupted(*_arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("workflows.verification_console.verify_problems", interrupted)
+    assert screwpile(monkeypatch, "verify", "PA11") == 130
+    errors = capsys.readouterr().err
+    assert "screwpile: stopped" in errors
+    assert "resume" not in errors

@@ -12,7 +12,8 @@ from workflows.element_tests.figures import curves_of, dilation_angle, key_figur
 from workflows.element_tests.paths import TESTS, Sample, run_test
 from workflows.errors import CaseError
 from workflows.schema import hints_of, is_tag, tag_value
-from workflows.soil_template import TYPICAL, soil_template_text
+from workflows.soil_template import soil_template_text
+from workflows.soil_typical import TYPICAL
 
 SAND = MohrCoulomb(40e6, 0.25, 0.0, np.radians(35.0), np.radians(8.0))
 CLAY = Tresca(8e6, 0.49, 20e3)

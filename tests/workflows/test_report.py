@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from install_mpm.conventions import Kinematics
 from install_mpm.record import StateFileError
 from workflows import directory as names
 from workflows.errors import DirectoryError
@@ -206,10 +207,11 @@ def test_text_from_files_cannot_become_markup():
 
 def test_certificate_table_shows_value_limit_and_verdict():
     entry = {"value": 0.07, "unit": "", "meaning": "error", "limit": 0.05, "is_met": False}
-    html = certificate_table({"some_error": entry}, with_limit=True)
+    html = certificate_table({"some_error": entry}, Kinematics.PLANE_STRAIN, with_limit=True)
     for part in ("0.0700", "0.05", "FAIL", "some_error"):
         assert part in html
-    assert "some_error" not in certificate_table({"some_error": entry}, with_limit=False)
+    other = certificate_table({"some_error": entry}, Kinematics.PLANE_STRAIN, with_limit=False)
+    assert "some_error" not in other
 
 
 def test_svg_ids_belong_to_their_figure():

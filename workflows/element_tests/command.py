@@ -14,7 +14,7 @@ from install_mpm.conventions import Unit
 from install_mpm.ground import GroundProfile, Stratum, geostatic_stress, strata
 from workflows.directory import write_text
 from workflows.element_tests.figures import curves_of, key_figures, table_of
-from workflows.element_tests.paths import TESTS, Sample, run_test
+from workflows.element_tests.paths import TESTS, Sample, run_test, skeleton_of
 from workflows.element_tests.picture import picture, table_csv
 from workflows.errors import CaseError
 from workflows.overrides import apply_overrides
@@ -22,7 +22,8 @@ from workflows.quantities import parse_quantity
 from workflows.report_style import png_of, styled
 from workflows.report_units import shown
 from workflows.schema import build, suggestion
-from workflows.soil_template import TYPICAL, soil_example
+from workflows.soil_template import soil_example
+from workflows.soil_typical import TYPICAL
 
 VERTICAL = 1
 DEPTH_OF_SAMPLE = 5.0
@@ -110,7 +111,7 @@ def _samples(ground: GroundProfile, stratum: Stratum, pressures: Sequence[str]) 
 
 def _tested(stratum: Stratum, name: str, sample: Sample, strain: float | None) -> list[Element]:
     """Return the path of one test."""
-    soil = stratum.layer.soil
+    soil = skeleton_of(stratum.layer.soil)
     asked = Sample(
         sample.pressure, sample.k0, sample.depth,
         TESTS[name].strain if strain is None else strain,
@@ -132,7 +133,7 @@ def _written(
     output: Path,
 ) -> str:
     """Write table and picture of a test; return its key figures as text."""
-    test, soil = TESTS[name], stratum.layer.soil
+    test, soil = TESTS[name], skeleton_of(stratum.layer.soil)
     text = f"{name} of {stratum.layer.name} ({soil.model}): {test.meaning}\n"
     for sample, path in zip(samples, paths, strict=True):
         label = f"{sample.pressure / 1e3:.4g}"

@@ -93,7 +93,8 @@ def _triaxial_figures(test: LaboratoryTest, curves: Curves) -> dict[str, Figure]
             curves.pore_pressure[-1], "Pa", "excess pore pressure at the end"
         )
     figures["friction_angle"] = _friction(curves, peak)
-    figures["friction_angle_at_end"] = _friction(curves, len(q) - 1)
+    if peak < len(q) - 1:
+        figures["friction_angle_at_end"] = _friction(curves, len(q) - 1)
     if not test.is_undrained:
         rate = np.gradient(np.log1p(-curves.volumetric_strain), np.log1p(-strain))
         figures["dilation_angle"] = Figure(

@@ -8,7 +8,7 @@ soil of an installation is.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -111,6 +111,12 @@ TESTS = {
     ),
 }  # fmt: skip
 """Every test by its name on the command line."""
+
+
+def skeleton_of(soil: SoilParameters) -> SoilParameters:
+    """Return the law without its pore fluid: in the laboratory the test says whether it drains."""
+    has_fluid = getattr(soil, "pore_fluid_bulk_modulus", 0.0) > 0.0
+    return replace(soil, pore_fluid_bulk_modulus=0.0) if has_fluid else soil  # type: ignore[arg-type]
 
 
 def run_test(soil: SoilParameters, name: str, sample: Sample) -> list[Element]:

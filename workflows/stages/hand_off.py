@@ -38,8 +38,11 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     installed: InstalledState = read_checked(directory, INSTALLED, case)
 
     def make_problem(mesh: FEMesh) -> ServiceProblem:
-        weight = buried_weight(case.pile, float(installed.pile.tip_depth))
-        return ServiceProblem(mesh, case.ground, case.interface, weight, case.service.numerics)
+        weight = buried_weight(case.pile, float(installed.pile.tip_depth), case.kinematics)
+        return ServiceProblem(
+            mesh, case.ground, case.interface, weight, case.service.numerics,
+            kinematics=case.kinematics,
+        )  # fmt: skip
 
     handed_off, certificate = hand_over(
         installed,

@@ -9,12 +9,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
+from install_mpm.history import History
 from install_mpm.installation import InstallationProgress, install
 from install_mpm.state_file import InstalledState, write_installed_state
 from workflows.case import Case, case_text
 from workflows.directory import CHECKPOINT, INSTALLED
 from workflows.manifest import created_by
 from workflows.progress import Advance, no_progress
+from workflows.report_units import FORCE_UNIT
 from workflows.state_files import read_checked
 
 
@@ -31,13 +35,13 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         If a step does not converge; nothing is written but the last checkpoint.
     """
     checkpoint = directory / CHECKPOINT
-    start = _read_checkpoint(directory, case)
+    start, unit = _read_checkpoint(directory, case), FORCE_UNIT[case.kinematics]
 
     def observe(state: InstalledState, progress: InstallationProgress) -> None:
         advance(
             round(1e6 * progress.penetration),
             round(1e6 * progress.target),
-            f"{progress.penetration:.2f} m, {progress.crowd_force / 1e3:.0f} kN/m",
+            f"{progress.penetration:.2f} m, {progress.crowd_force / 1e3:.0f} {unit}",
         )
         if progress.load_step > 0 and progress.load_step % case.numerics.checkpoint_every == 0:
             write_installed_state(checkpoint, state, created_by())
@@ -51,6 +55,8 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         case.installation,
         case.numerics,
         case_text(case),
+        kinematics=case.kinematics,
+        discretisation=case.discretisation,
         resume_from=start,
         observe=observe,
     )
@@ -59,7 +65,20 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     force = float(installed.history.crowd_force[-1])
     return [
         f"pile tip at {float(installed.pile.tip_depth):g} m, "
-        f"crowd force {force / 1e3:.1f} kN/m after {len(installed.history.penetration)} steps"
+        f"crowd force {force / 1e3:.1f} {unit} after {len(installed.history.penetration)} steps",
+        *_renewals(installed.history, unit),
+    ]
+
+
+def _renewals(history: History, unit: str) -> list[str]:
+    """Return what new meshes have changed, in one line; none if there was none."""
+    stress = history.remesh_stress_change[np.isfinite(history.remesh_stress_change)]
+    force = history.remesh_force_change[np.isfinite(history.remesh_force_change)]
+    if not len(stress):
+        return []
+    return [
+        f"mesh made anew {len(stress)} times: stress changed by at most {100 * stress.max():.2g} %,"
+        f" crowd force by at most {np.abs(force).max() / 1e3:.2g} {unit}"
     ]
 
 

@@ -32,15 +32,16 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         If a step does not converge; nothing is written.
     """
     handed_off: HandedOffState = read_checked(directory, HANDED_OFF, case)
-    weight = buried_weight(case.pile, float(handed_off.pile.tip_depth))
+    weight = buried_weight(case.pile, float(handed_off.pile.tip_depth), case.kinematics)
     problem = ServiceProblem(
-        handed_off.mesh, case.ground, case.interface, weight, case.service.numerics
-    )
+        handed_off.mesh, case.ground, case.interface, weight, case.service.numerics,
+        kinematics=case.kinematics,
+    )  # fmt: skip
     result = run_programmes(
         problem,
         handed_off.state,
         case.service.programmes,
-        service_observer(len(case.service.programmes), advance),
+        service_observer(case, advance),
         model="installed",
         case_text=case_text(case),
     )

@@ -35,14 +35,16 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     depth = case.final_tip_depth
     layers = boundary_depths(case.ground)
     mesh = make_mesh(case.pile, depth, case.box, case.handoff, level_surface(), layers)
+    weight = buried_weight(case.pile, depth, case.kinematics)
     problem = ServiceProblem(
-        mesh, case.ground, case.interface, buried_weight(case.pile, depth), case.service.numerics
-    )
+        mesh, case.ground, case.interface, weight, case.service.numerics,
+        kinematics=case.kinematics,
+    )  # fmt: skip
     result = run_programmes(
         problem,
         problem.wished_in_place_state(),
         case.service.programmes,
-        service_observer(len(case.service.programmes), advance),
+        service_observer(case, advance),
         model="wished_in_place",
         case_text=case_text(case),
     )

@@ -8,12 +8,15 @@ torque is compared.  No size is given in the paper; 2 m x 1 m in a circle of 5 m
 
 from __future__ import annotations
 
-from typing import Annotated, NamedTuple
+from collections.abc import Callable
+from functools import partial
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
-from install_mpm.constitutive.parameters import HenckyElastic, NeoHookean
+from install_mpm.constitutive.parameters import HenckyElastic, NeoHookean, SoilParameters
 from install_mpm.conventions import Unit
+from install_mpm.mesh_motion import rotate_clockwise
 from install_mpm.options import Numerics
 from workflows.verification.body import Body
 from workflows.verification.disc_meshes import circle
@@ -21,6 +24,7 @@ from workflows.verification.disc_meshes import ellipse as ellipse_corners
 from workflows.verification.ellipticity import is_elliptic
 from workflows.verification.problem import (
     Outcome,
+    Picture,
     Problem,
     Series,
     at_least,
@@ -31,7 +35,7 @@ from workflows.verification.references.annulus_incompressible import (
     largest_incompressible_rotation,
 )
 from workflows.verification.references.ellipse_rotation import ellipse_rotation
-from workflows.verification.turned_disc import STEP, Disc, MeshLaw, Turned, turn
+from workflows.verification.turned_disc import STEP, Disc, MeshLaw, Turned, disc_body, turn
 
 RIM_SIDES, COARSE, FINE = 72, 48, 72
 """Sides of the rim, which maps onto itself in a step of 5 degrees, and of the ellipse."""
@@ -40,6 +44,9 @@ SMALL_ROTATION = 1e-7
 COMPRESSIBLE = Numerics(volumetric_term=0.0)
 SMALL = Numerics(volumetric_term=0.0, tolerance=1e-6)
 ONE_MESH_TO_ANOTHER = 2e-2
+
+SHOWN = (45.0, 90.0)
+"""Rotations in degrees that the paper shows."""
 
 Length = Annotated[float, Unit("m")]
 Modulus = Annotated[float, Unit("Pa")]
@@ -65,14 +72,10 @@ def large_rotation(
 ) -> Outcome:
     """Return the neo-Hookean torque up to 90 degrees on two meshes and by two laws (FIG7)."""
     soil, angle = NeoHookean(E, nu), np.pi / 2.0
-    coarse, fine, tapered = (
-        turn(disc, soil, angle, numerics=COMPRESSIBLE)
-        for disc in (
-            _disc(p, q, R, COARSE),
-            _disc(p, q, R, FINE),
-            _disc(p, q, R, FINE, MeshLaw.TAPERED),
-        )
-    )
+    album = _Album(_disc(p, q, R, FINE))
+    coarse = turn(_disc(p, q, R, COARSE), soil, angle, numerics=COMPRESSIBLE)
+    fine = turn(album.disc, soil, angle, numerics=COMPRESSIBLE, observe=album.keep)
+    tapered = turn(_disc(p, q, R, FINE, MeshLaw.TAPERED), soil, angle, numerics=COMPRESSIBLE)
     checks = [at_least("rotation reached in degrees", np.rad2deg(fine.angle[-1]), 90.0 - 1e-9)]
     for degrees in (45.0, 90.0):
         k = round(np.deg2rad(degrees) / STEP) - 1
@@ -83,6 +86,7 @@ def large_rotation(
         tuple(checks),
         (_curve("Neo-Hookean soil: fine mesh beside coarse mesh", fine, coarse),),
         residual_histories=coarse.residuals + fine.residuals + tapered.residuals,
+        pictures=(album.picture(soil),),
     )
 
 
@@ -94,10 +98,10 @@ def hencky_rotation(
     While the soil is elliptic everywhere the torques of two meshes have to agree.  It cannot stay
     so for longer than beside an incompressible circle: an ellipse concentrates the strain.
     """
-    soil = HenckyElastic(E, nu)
+    soil, album = HenckyElastic(E, nu), _Album(_disc(p, q, R, FINE))
     runs = {
-        name: _turn_hencky(_disc(p, q, R, sides), soil)
-        for name, sides in (("fine", FINE), ("coarse", COARSE))
+        name: _turn_hencky(_disc(p, q, R, sides), soil, keep)
+        for name, sides, keep in (("fine", FINE, album.keep), ("coarse", COARSE, _look_away))
     }
     (fine, _), (coarse, _) = runs.values()
     elliptic = min(len(looks.elliptic) for _, looks in runs.values())
@@ -112,7 +116,43 @@ def hencky_rotation(
         (_curve("Hencky soil: fine mesh beside coarse mesh", fine, coarse),),
         tuple(_in_words(name, *run) for name, run in runs.items()),
         residual_histories=fine.residuals + coarse.residuals,
+        pictures=(album.picture(soil),),
     )
+
+
+class _Album:
+    """States of a rotation that the paper shows: 45 and 90 degrees, or the last one reached."""
+
+    def __init__(self, disc: Disc) -> None:
+        self.disc = disc
+        self.states: dict[float, Body] = {}
+
+    def keep(self, angle: float, body: Body) -> None:
+        """Keep the state if it is one of the paper's, or the last one so far."""
+        for degrees in [d for d in self.states if d not in SHOWN]:
+            del self.states[degrees]
+        self.states[round(float(np.rad2deg(angle)), 6)] = body
+
+    def picture(self, soil: SoilParameters) -> Picture:
+        """Return the picture of initial and kept states."""
+        return Picture("states", "Rotation of the ellipse as in Fig. 7", partial(self._draw, soil))
+
+    def _draw(self, soil: SoilParameters) -> Any:
+        from workflows.verification.paper_drawings import turned_states
+
+        first = disc_body(self.disc, soil, COMPRESSIBLE)
+        bodies = {0.0: first, **self.states}
+        return turned_states(
+            [
+                (f"{degrees:g} degrees", (body.points, body.mesh),
+                 rotate_clockwise(self.disc.hole, -np.deg2rad(degrees)))
+                for degrees, body in bodies.items()
+            ]
+        )  # fmt: skip
+
+
+def _look_away(angle: float, body: Body) -> None:
+    """Keep nothing."""
 
 
 class _Looks(NamedTuple):
@@ -124,13 +164,16 @@ class _Looks(NamedTuple):
     """Rotation in rad, share of the area and mean radius in m of points that are not."""
 
 
-def _turn_hencky(disc: Disc, soil: HenckyElastic) -> tuple[Turned, _Looks]:
+def _turn_hencky(
+    disc: Disc, soil: HenckyElastic, keep: Callable[[float, Body], None]
+) -> tuple[Turned, _Looks]:
     """Return the rotation as far as it goes, and where the soil has lost ellipticity."""
     shear_modulus = soil.youngs_modulus / (2.0 * (1.0 + soil.poissons_ratio))
     first_lame = 2.0 * shear_modulus * soil.poissons_ratio / (1.0 - 2.0 * soil.poissons_ratio)
     looks = _Looks([], [])
 
     def look(angle: float, body: Body) -> None:
+        keep(angle, body)
         points = body.points
         is_lost = ~is_elliptic(points.elastic_log_strain, shear_modulus, first_lame)
         if is_lost.any():

@@ -11,8 +11,9 @@ import numpy as np
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.conventions import GRAVITY
 from install_mpm.equilibrium import Prescribed
+from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
-from install_mpm.step import StepResult, locate
+from install_mpm.step import StepResult
 from workflows.verification.body import Body, ProblemNotSolvedError, advance
 
 MOST_HALVINGS = 3

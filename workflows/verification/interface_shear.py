@@ -8,14 +8,22 @@ is c L + N tan(phi).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic
 from install_mpm.conventions import Unit
-from workflows.verification.problem import Check, Outcome, Problem, Series, at_most, relative
+from workflows.verification.problem import (
+    Check,
+    Outcome,
+    Picture,
+    Problem,
+    Series,
+    at_most,
+    relative,
+)
 from workflows.verification.small_strain_blocks import load, make_blocks
 
 NODES = np.array([[0, 0], [1, 0], [1, 1], [0, 1], [0, 1], [1, 1], [1, 2], [0, 2]], dtype=float)
@@ -154,6 +162,7 @@ def pa11(
             tuple(history) for result in results.values() for history in result.residuals
         ),
         round_off=ROUND_OFF,
+        pictures=(_picture(results["(a) "], E),),
     )
 
 
@@ -182,7 +191,21 @@ def pa12(
         series=(_curve("", result),),
         residual_histories=tuple(tuple(history) for history in result.residuals),
         round_off=ROUND_OFF,
+        pictures=(_picture(result, E),),
     )
+
+
+def _picture(result: InterfaceShearResult, youngs_modulus: float) -> Picture:
+    """Return the picture of the blocks, each of which is a shear spring of stiffness E / 2."""
+
+    def draw() -> Any:
+        from workflows.verification.paper_drawings import sheared_blocks
+
+        curve = np.column_stack([result.displacement, result.force])
+        of_block = float(result.force[-1]) / (youngs_modulus / 2.0)
+        return sheared_blocks(of_block, result.slip, float(result.displacement[-1]), curve)
+
+    return Picture("states", "Two blocks as in Fig. 9", draw)
 
 
 def _checks(name: str, result: InterfaceShearResult, tolerance: float) -> tuple[Check, ...]:

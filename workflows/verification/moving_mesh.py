@@ -18,10 +18,11 @@ from install_mpm.conventions import Unit
 from install_mpm.discretisation import Scheme
 from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground
+from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints, cauchy_stress
 from install_mpm.mesh_motion import rotate
 from install_mpm.options import Numerics
-from install_mpm.step import StepResult, locate
+from install_mpm.step import StepResult
 from workflows.verification.body import Body, MoveMesh, advance, make_body
 from workflows.verification.disc_meshes import circle, disc_mesh
 from workflows.verification.problem import Check, Outcome, Problem, at_most

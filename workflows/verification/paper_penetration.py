@@ -9,6 +9,7 @@ at most the work of the pile; what is missing the scheme has lost.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
@@ -16,19 +17,30 @@ import numpy as np
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Unit
 from install_mpm.discretisation import Scheme
+from workflows.verification.paper_penetration_checks import (
+    Run,
+    checks_to_prototype,
+    dissipation_remark,
+    dragged_check,
+    energy_check,
+    excess_of_strength,
+    geometry,
+    is_of_the_paper,
+    not_claimed,
+    reaction_curve,
+    scaled,
+    states_picture,
+)
 from workflows.verification.penetration import (
-    Penetration,
     PenetrationResult,
     penetrate,
     surface,
-    work_and_energy,
 )
 from workflows.verification.problem import (
     Check,
     Outcome,
     Problem,
     Series,
-    absolute,
     at_most,
     relative,
 )
@@ -64,22 +76,37 @@ def fig6(
     nu: float = 0.0,
     h: Metre = 0.5,
     penetration: Metre = 4.0,
+    width: Metre = 5.0,
+    depth: Metre = 15.0,
+    half_width: Metre = 1.0,
+    embedment: Metre = 8.0,
+    step: Metre = 0.1,
 ) -> Outcome:
     """Return the no-slip pile with the paper's scheme, outer side as a roller and fixed."""
     checks: list[Check] = []
     series: list[Series] = []
     histories: list[tuple[float, ...]] = []
+    runs: list[Run] = []
     remarks = [NO_EXTERNAL_REFERENCE]
+    box = geometry(h, width, depth, half_width, embedment, step, penetration)
     for is_side_fixed, side in ((False, "roller side"), (True, "fixed side")):
-        problem = Penetration(E, nu, size=h, steps=_steps(penetration), is_side_fixed=is_side_fixed)
+        problem = replace(box, youngs_modulus=E, poissons_ratio=nu, is_side_fixed=is_side_fixed)
         result = penetrate(problem)
-        table = prototype.NO_SLIP.get((h, is_side_fixed), {}) if nu == 0.0 else {}
-        checks += _to_prototype(side, result, _scaled(table, E), TO_PROTOTYPE)
-        checks.append(_energy(side, result, problem))
-        series.append(_curve(side, result, _scaled(table, E)))
-        remarks.append(_dissipated(side, result, problem))
+        runs.append((side, problem, result))
+        has_table = nu == 0.0 and is_of_the_paper(problem)
+        table = prototype.NO_SLIP.get((h, is_side_fixed), {}) if has_table else {}
+        checks += checks_to_prototype(side, result, scaled(table, E), TO_PROTOTYPE)
+        checks.append(energy_check(side, result, problem))
+        series.append(reaction_curve(side, result, scaled(table, E)))
+        remarks.append(dissipation_remark(side, result, problem))
         histories += result.residuals
-    return Outcome(tuple(checks), tuple(series), tuple(remarks), tuple(histories))
+    return Outcome(
+        tuple(checks),
+        tuple(series),
+        tuple(remarks),
+        tuple(histories),
+        pictures=(states_picture(runs),),
+    )  # fmt: skip
 
 
 def fig6_default(
@@ -88,16 +115,25 @@ def fig6_default(
     nu: float = 0.0,
     h: Metre = 0.5,
     penetration: Metre = 4.0,
+    width: Metre = 5.0,
+    depth: Metre = 15.0,
+    half_width: Metre = 1.0,
+    embedment: Metre = 8.0,
+    step: Metre = 0.1,
 ) -> Outcome:
     """Return the no-slip pile with the discretisation of the installation stage."""
-    problem = Penetration(E, nu, size=h, steps=_steps(penetration), scheme=Scheme.CARRIERS)
+    box = geometry(h, width, depth, half_width, embedment, step, penetration)
+    problem = replace(box, youngs_modulus=E, poissons_ratio=nu, scheme=Scheme.CARRIERS)
     result = penetrate(problem)
     checks = (
         at_most("steps that were cut", result.cuts, 0),
-        _energy("roller side", result, problem),
+        energy_check("roller side", result, problem),
     )
-    remarks = (_dissipated("roller side", result, problem),)
-    return Outcome(checks, (_curve("roller side", result, {}),), remarks, result.residuals)
+    remarks = (dissipation_remark("roller side", result, problem),)
+    return Outcome(
+        checks, (reaction_curve("roller side", result, {}),), remarks, result.residuals,
+        pictures=(states_picture([("TRI6 carriers", problem, result)]),),
+    )  # fmt: skip
 
 
 def fig8(
@@ -109,36 +145,46 @@ def fig8(
     ks_small: Stiffness = 1e1,
     h: Metre = 0.5,
     penetration: Metre = 4.0,
+    width: Metre = 5.0,
+    depth: Metre = 15.0,
+    half_width: Metre = 1.0,
+    embedment: Metre = 8.0,
+    step: Metre = 0.1,
 ) -> Outcome:
     """Return the pile with elastic interfaces of large and small shear stiffness."""
     checks: list[Check] = []
     series: list[Series] = []
     histories: list[tuple[float, ...]] = []
+    runs: list[Run] = []
     remarks = [NO_EXTERNAL_REFERENCE]
+    box = geometry(h, width, depth, half_width, embedment, step, penetration)
     has_table = (nu, kn, h, E) == (0.0, 1e8, 0.5, prototype.YOUNGS_MODULUS)
+    has_table &= is_of_the_paper(box)
     for ks, name in ((ks_large, "large k_s"), (ks_small, "small k_s")):
-        problem = Penetration(E, nu, size=h, steps=_steps(penetration), law=elastic_law(kn, ks))
+        problem = replace(box, youngs_modulus=E, poissons_ratio=nu, law=elastic_law(kn, ks))
         result = penetrate(problem)
+        runs.append((name, problem, result))
         table = prototype.ELASTIC_INTERFACE.get(ks, {}) if has_table else {}
-        compared = _to_prototype(name, result, table, TO_PROTOTYPE)
+        compared = checks_to_prototype(name, result, table, TO_PROTOTYPE)
         if ks == ks_small:
-            remarks += [_miss(check) for check in compared[STEPS_COMPARED // 10 + 1 :]]
+            remarks += [not_claimed(check) for check in compared[STEPS_COMPARED // 10 + 1 :]]
             compared = compared[: STEPS_COMPARED // 10 + 1]
         checks += compared
         levels = surface(result.body.points, problem)
         checks.append(
             at_most("unevenness of the surface beside a smooth pile, m", np.ptp(levels), 0.05)
             if ks == ks_small
-            else _dragged(levels, result)
+            else dragged_check(levels, result, problem)
         )
-        series.append(_curve(name, result, table))
+        series.append(reaction_curve(name, result, table))
         histories += result.residuals
-    return Outcome(tuple(checks), tuple(series), tuple(remarks), tuple(histories))
-
-
-def _miss(check: Check) -> str:
-    """Return a comparison that is not claimed, in words."""
-    return f"not claimed within {check.tolerance:.0%}: {check.quantity}, {check.error:+.1%}"
+    return Outcome(
+        tuple(checks),
+        tuple(series),
+        tuple(remarks),
+        tuple(histories),
+        pictures=(states_picture(runs),),
+    )  # fmt: skip
 
 
 def fig6_friction(
@@ -152,6 +198,11 @@ def fig6_friction(
     h_coarse: Metre = 0.5,
     h_fine: Metre = 1.0 / 3.0,
     penetration: Metre = 4.0,
+    width: Metre = 5.0,
+    depth: Metre = 15.0,
+    half_width: Metre = 1.0,
+    embedment: Metre = 8.0,
+    step: Metre = 0.1,
 ) -> Outcome:
     """Return the pile with the elasto-plastic interface of Fig. 9, on two meshes.
 
@@ -160,35 +211,29 @@ def fig6_friction(
     law = friction_law(kn, ks, c, phi)
     checks: list[Check] = []
     series: list[Series] = []
+    runs: list[Run] = []
     results: list[PenetrationResult] = []
     for h in (h_coarse, h_fine):
-        result = penetrate(friction_problem(law, E, nu, h, _steps(penetration)))
+        box = geometry(h, width, depth, half_width, embedment, step, penetration)
+        problem = replace(
+            box, youngs_modulus=E, poissons_ratio=nu, law=law, scheme=Scheme.CARRIERS,
+            is_neo_hookean=True,
+        )  # fmt: skip
+        result = penetrate(problem)
         name = f"h = {h:.3g} m"
-        excess = _excess_of_strength(result, c, phi)
+        runs.append((name, problem, result))
+        excess = excess_of_strength(result, c, phi)
         checks.append(at_most(f"({name}) steps that were cut", result.cuts, 0))
         checks.append(at_most(f"({name}) shear beyond the strength, share", excess, 1e-9))
-        series.append(_curve(name, result, {}))
+        series.append(reaction_curve(name, result, {}))
         results.append(result)
     coarse, fine = (float(result.reaction[-1]) for result in results)
     checks.append(relative("reaction on the coarse mesh against the fine, N/m", coarse, fine, 0.02))
     histories = results[0].residuals + results[1].residuals
-    return Outcome(tuple(checks), tuple(series), (NO_REFERENCE_WITH_FRICTION,), histories)
-
-
-def friction_problem(
-    law: CoulombInterface, E: float = 10e3, nu: float = 0.0, h: float = 0.5, steps: int = 40
-) -> Penetration:
-    """Return the pile with friction in neo-Hookean soil, default discretisation."""
-    return Penetration(
-        E, nu, size=h, steps=steps, law=law, scheme=Scheme.CARRIERS, is_neo_hookean=True
-    )
-
-
-def _excess_of_strength(result: PenetrationResult, cohesion: float, friction: float) -> float:
-    """Return by how much |t_s| exceeds c - t_n tan(phi), over the largest strength; 0 if never."""
-    shear, normal = result.body.interface.traction.T
-    strength = cohesion - normal * np.tan(friction)
-    return float(max((np.abs(shear) - strength).max() / strength.max(), 0.0))
+    return Outcome(
+        tuple(checks), tuple(series), (NO_REFERENCE_WITH_FRICTION,), histories,
+        pictures=(states_picture(runs),),
+    )  # fmt: skip
 
 
 def elastic_law(kn: float, ks: float) -> CoulombInterface:
@@ -201,80 +246,6 @@ def friction_law(
 ) -> CoulombInterface:
     """Return the elasto-plastic interface, by default with the strength of the paper's Fig. 9."""
     return CoulombInterface(kn, ks, cohesion=c, friction_angle=phi)
-
-
-def _steps(penetration: float) -> int:
-    return round(penetration / Penetration.step)
-
-
-def _scaled(table: dict[int, float], youngs_modulus: float) -> dict[int, float]:
-    factor = youngs_modulus / prototype.YOUNGS_MODULUS
-    return {number: factor * force for number, force in table.items()}
-
-
-def _to_prototype(
-    name: str,
-    result: PenetrationResult,
-    table: dict[int, float],
-    tolerance: float,
-) -> list[Check]:
-    """Return checks of the reaction at the steps of the table that were made."""
-    return [
-        relative(
-            f"({name}) reaction at step {number} against the prototype, N/m",
-            result.reaction_at(Penetration.step * number),
-            force,
-            tolerance,
-        )
-        for number, force in table.items()
-        if Penetration.step * number <= result.penetration[-1] + 1e-9
-    ]
-
-
-def _energy(name: str, result: PenetrationResult, problem: Penetration) -> Check:
-    """Return the check that no energy comes from nowhere: elastic soil stores the work at most."""
-    work, energy = work_and_energy(result, problem)
-    beyond = max(energy / work - 1.0, 0.0)
-    return at_most(f"({name}) energy beyond the work of the pile, share", beyond, 0.01)
-
-
-def _dissipated(name: str, result: PenetrationResult, problem: Penetration) -> str:
-    """Return the remark on the work that the scheme loses from step to step."""
-    work, energy = work_and_energy(result, problem)
-    return (
-        f"({name}) work {work / 1e3:.2f} kJ/m, stored {energy / 1e3:.2f} kJ/m: the scheme loses "
-        f"{100.0 * (1.0 - energy / work):.1f} %; steps cut: {result.cuts}."
-    )
-
-
-def _dragged(levels: np.ndarray, result: PenetrationResult) -> Check:
-    """Return the check of the surface that sticks to the pile against the prototype's, Fig. 6."""
-    if abs(result.penetration[-1] - 4.0) > 1e-9 or len(levels) != 8:
-        rise = max(levels[0] - levels[-1], 0.0)
-        return at_most("rise of the surface towards a rough pile, m", rise, 0.0)
-    worst = int(np.abs(levels - prototype.NO_SLIP_SURFACE).argmax())
-    return absolute(
-        "surface beside a rough pile against the prototype without slip, worst, m",
-        levels[worst],
-        prototype.NO_SLIP_SURFACE[worst],
-        0.02,
-    )
-
-
-def _curve(name: str, result: PenetrationResult, table: dict[int, float]) -> Series:
-    """Return the reaction; the reference is the table, between its steps linear."""
-    steps = result.penetration / Penetration.step
-    reference: tuple[float, ...] = ()
-    if table:
-        reference = tuple(np.interp(steps, [0, *table], [0.0, *table.values()]))
-    return Series(
-        f"({name}) reaction on the half pile",
-        "penetration, m",
-        "reaction, N/m",
-        tuple(result.penetration),
-        tuple(result.reaction),
-        reference,
-    )
 
 
 PROBLEMS = (

@@ -13,6 +13,7 @@ from install_mpm.conventions import Unit
 from workflows.errors import CaseError
 from workflows.quantities import parse_quantity
 from workflows.verification.problem import Problem
+from workflows.verification.ranges import check_value
 
 WORDS = {"true": True, "yes": True, "on": True, "false": False, "no": False, "off": False}
 
@@ -80,14 +81,28 @@ def read_assignments(problem: Problem, assignments: Iterable[str]) -> dict[str, 
             names = ", ".join(f"{one.name} = {one.format(one.default)}" for one in known.values())
             raise CaseError(f"{problem.identifier} has no parameter {name!r}; it has {names}")
         try:
-            values[name] = _value(known[name], text)
+            values[name] = read_value(known[name], text)
         except CaseError as error:
             raise CaseError(f"{problem.identifier}: {name}: {error}") from error
     return values
 
 
-def _value(parameter: Parameter, text: str) -> Any:
-    """Return ``text`` as a value of the parameter."""
+def read_value(parameter: Parameter, text: str) -> Any:
+    """Return ``text`` as a value of the parameter; a number without unit is in SI.
+
+    Raises
+    ------
+    CaseError
+        If it does not suit the parameter.
+    """
+    value = _typed(parameter, text)
+    symbol = parameter.unit.symbol if parameter.unit else ""
+    check_value(parameter.name, symbol, parameter.default, value)
+    return value
+
+
+def _typed(parameter: Parameter, text: str) -> Any:
+    """Return ``text`` in the type of the parameter."""
     kind = parameter.kind
     if kind is bool:
         return _choose(text, WORDS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 from install_mpm.newton import ROUND_OFF
 
@@ -41,6 +42,17 @@ class Series:
 
 
 @dataclass(frozen=True)
+class Picture:
+    """A picture of a state for the report; it is drawn only if a report is written."""
+
+    name: str
+    """Of its file, after the name of the problem or case."""
+    caption: str
+    draw: Callable[[], Any]
+    """Return the figure (matplotlib)."""
+
+
+@dataclass(frozen=True)
 class Outcome:
     """Result of a reference problem."""
 
@@ -51,6 +63,7 @@ class Outcome:
     """Relative Newton residuals of every step, for the statement on convergence."""
     round_off: float = ROUND_OFF
     """Relative residual below which nothing shows but round-off: stiff ground, small loads."""
+    pictures: tuple[Picture, ...] = field(default=(), repr=False)
 
 
 @dataclass(frozen=True)

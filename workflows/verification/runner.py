@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -62,6 +62,18 @@ class NewtonStatement:
 
 
 @dataclass(frozen=True)
+class Run:
+    """A problem to be run, alone or as a case file describes it."""
+
+    problem: Problem
+    values: Mapping[str, Any]
+    """Values in place of defaults."""
+    name: str
+    """Of the problem, or of the case file without its ending."""
+    title: str
+
+
+@dataclass(frozen=True)
 class Verified:
     """A problem, what it was run with and what came out."""
 
@@ -73,6 +85,19 @@ class Verified:
     """None if the problem could not be solved."""
     failure: str = ""
     """Why it could not, in a sentence."""
+    case_name: str = ""
+    """Of the case file without its ending; empty without a case."""
+    case_title: str = ""
+
+    @property
+    def name(self) -> str:
+        """What the result is called: the case, or the identifier of the problem."""
+        return self.case_name or self.problem.identifier
+
+    @property
+    def title(self) -> str:
+        """Title of the case, or of the problem."""
+        return self.case_title or self.problem.title
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -135,20 +160,22 @@ def _sentence(error: Exception) -> str:
 
 
 def run_problems(
-    problems: Sequence[Problem],
-    values: Mapping[str, Any],
+    runs: Sequence[Run],
     advance: Callable[[int, int, str], None],
     observe: Callable[[Verified], None],
 ) -> list[Verified]:
-    """Return the results of all ``problems``; ``values`` change the parameters of each.
+    """Return the results of all ``runs``.
 
     ``advance`` is told of expected seconds before each problem, ``observe`` gets each result.
     """
-    expected = [QUICK_SECONDS if problem.is_quick else OTHER_SECONDS for problem in problems]
+    expected = [QUICK_SECONDS if run.problem.is_quick else OTHER_SECONDS for run in runs]
     results: list[Verified] = []
-    for number, problem in enumerate(problems):
-        note = f"{problem.identifier} {problem.title}"
+    for number, run in enumerate(runs):
+        note = f"{run.name} {run.title}"
         advance(round(sum(expected[:number])), round(sum(expected)), note)
-        results.append(run_problem(problem, values))
-        observe(results[-1])
+        result = run_problem(run.problem, run.values)
+        if run.name != run.problem.identifier:
+            result = replace(result, case_name=run.name, case_title=run.title)
+        results.append(result)
+        observe(result)
     return results

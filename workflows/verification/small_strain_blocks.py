@@ -103,6 +103,7 @@ def _filled_cells(
     points = IntegrationPoints(
         cell_start=np.arange(n_cells + 1) * n_per_cell,
         reference_coordinates=np.tile(model.cell.integration_coordinates, (n_cells, 1)),
+        shape_values=geometry.shape_values.reshape(n_points, 4),
         shape_gradients=geometry.shape_gradients.reshape(n_points, 4, 2),
         hoop_gradients=geometry.hoop_gradients.reshape(n_points, 4),
         volume=geometry.integration_volume.ravel(),

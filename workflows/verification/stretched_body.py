@@ -7,8 +7,9 @@ its cells stay full; without Poisson's ratio the block keeps its width.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Annotated, NamedTuple
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -17,10 +18,11 @@ from install_mpm.constitutive.parameters import HenckyElastic
 from install_mpm.conventions import Unit
 from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground
+from install_mpm.material_points import MaterialPoints
 from install_mpm.mesh_motion import translate
 from install_mpm.options import Numerics
 from workflows.verification.body import advance, make_body
-from workflows.verification.problem import Check, Outcome, Problem, Series, at_most
+from workflows.verification.problem import Check, Outcome, Picture, Problem, Series, at_most
 from workflows.verification.rectangle import rectangle_mesh
 from workflows.verification.references.stretched_body import moved_heights
 from workflows.verification.references.stretched_body import stretched_body as reference
@@ -45,6 +47,7 @@ def stretched_body(
     """Return force, size and mesh of the block of height L_b, its top moved by u and by -u/2."""
     checks: list[Check] = []
     series, residuals = [], []
+    states: list[tuple[str, State, float]] = []
     for sense, last in (("stretched", u), ("pressed", -0.5 * u)):
         pull = _pull(last, (L_b, L_m, width), HenckyElastic(E, nu))
         exact = reference(
@@ -63,7 +66,24 @@ def stretched_body(
         series.append(Series(title, "displacement in m", "force in N per metre", x, computed,
                              expected))  # fmt: skip
         residuals += pull.residuals
-    return Outcome(tuple(checks), tuple(series), residual_histories=tuple(residuals))
+        if not states:
+            states.append(("undeformed", pull.start, L_b))
+        states.append((sense, pull.end, L_b + last))
+    return Outcome(
+        tuple(checks),
+        tuple(series),
+        residual_histories=tuple(residuals),
+        pictures=(Picture("states", "Body and mesh as in Fig. 3", partial(_drawn, states)),),
+    )
+
+
+def _drawn(states: Sequence[tuple[str, State, float]]) -> Any:
+    from workflows.verification.paper_drawings import stretched_states
+
+    return stretched_states(states)
+
+
+State = tuple[MaterialPoints, BackgroundMesh]
 
 
 class _Pull(NamedTuple):
@@ -75,6 +95,8 @@ class _Pull(NamedTuple):
     distance: float
     """Largest distance of a node from eqs (1)-(2) in m."""
     residuals: list[tuple[float, ...]]
+    start: State
+    end: State
 
 
 def _pull(last: float, lengths: tuple[float, float, float], soil: HenckyElastic) -> _Pull:
@@ -85,6 +107,7 @@ def _pull(last: float, lengths: tuple[float, float, float], soil: HenckyElastic)
     mesh = rectangle_mesh(np.linspace(0.0, width, COLUMNS + 1), np.append(levels, above))
     is_soil = mesh.nodes[mesh.cell_nodes[:, :3], 1].mean(axis=1) < height
     body = make_body(mesh, Ground(0.0, 1.0, soil), numerics=TIGHT, is_soil=is_soil)
+    start = body.points, body.mesh
     x, y = mesh.reference_nodes.T
     on_top = np.abs(y - height) < 1e-9
     is_prescribed = np.column_stack([x < 1e-9, on_top | (y < 1e-9)])
@@ -101,7 +124,8 @@ def _pull(last: float, lengths: tuple[float, float, float], soil: HenckyElastic)
         residuals.append(tuple(result.equilibrium.newton.residuals))
         wanted = moved_heights(y, body_height=height, mesh_height=mesh_height, displacement=place)
         distance = max(distance, np.abs(body.mesh.nodes[:, 1] - wanted).max())
-    return _Pull(places, np.array(forces), np.array(areas), distance, residuals)
+    end = body.points, body.mesh
+    return _Pull(places, np.array(forces), np.array(areas), distance, residuals, start, end)
 
 
 def _follow(
