@@ -101,7 +101,9 @@ def _handed_off(evidence: Evidence, mesh: FEMesh, certificate: Certificate) -> H
     forces = pile_forces(
         state.interface_traction, interface.normal, interface.area, interface.part, kinematics
     )
-    weight = buried_weight(evidence.pile, float(installed.pile.tip_depth), kinematics)
+    weight = buried_weight(
+        evidence.pile, float(installed.pile.tip_depth), kinematics, evidence.ground.water_table
+    )
     head_load = sum(forces.values()) / WHOLE_PILE[kinematics] - weight
     return HandedOffState(
         mesh=mesh,

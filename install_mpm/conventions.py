@@ -14,6 +14,9 @@ from enum import IntEnum
 GRAVITY = 9.81
 """Gravitational acceleration in m/s^2, acting in the negative vertical direction."""
 
+WATER_UNIT_WEIGHT = 1000.0 * GRAVITY
+"""Unit weight of water in N/m^3."""
+
 
 class Kinematics(IntEnum):
     """How nodal displacements make a 3 x 3 gradient."""

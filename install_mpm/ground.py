@@ -19,10 +19,7 @@ from annotated_types import Ge, Gt
 
 from install_mpm import soil_strength
 from install_mpm.constitutive.parameters import SoilParameters
-from install_mpm.conventions import GRAVITY, Unit
-
-WATER_UNIT_WEIGHT = 1000.0 * GRAVITY
-"""Unit weight of water in N/m^3."""
+from install_mpm.conventions import WATER_UNIT_WEIGHT, Unit
 
 K0 = Annotated[float, Gt(0)] | Literal["jaky"]
 """Horizontal over vertical stress, or the rule that gives it by the strength of the soil."""

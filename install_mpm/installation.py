@@ -143,12 +143,10 @@ def renew_mesh(problem: Installation, state: InstalledState) -> tuple[Installati
     """
     depth = float(state.pile.tip_depth)
     renewed, mesh, interface = set_up_at(problem, depth)
-    smallest = problem.mesh_options.smallest_quality
-    if is_worn(mesh, smallest):
+    if is_worn(mesh, problem.mesh_options.smallest_quality):
         raise NotConvergedError(
-            f"installation: the mesh made anew at a tip depth of {depth:.4f} m has a cell of "
-            f"quality {cell_quality(mesh).min():.2f}; use a background_mesh.smallest_quality "
-            f"below that (it is {smallest:g})"
+            f"installation: the mesh made anew at tip depth {depth:.3f} m has a cell of quality "
+            f"{cell_quality(mesh).min():.2f}; use a background_mesh.smallest_quality below that"
         )
     resting, accepted = advance_pile(renewed, on_new_mesh(state, mesh, interface), 0.0)
     if not accepted:
@@ -156,8 +154,7 @@ def renew_mesh(problem: Installation, state: InstalledState) -> tuple[Installati
             f"installation: no equilibrium on the mesh made anew at a tip depth of {depth:.4f} m; "
             "use another background_mesh.smallest_quality, or a finer mesh"
         )
-    history = with_changes(resting.history, state, resting.material_points)
-    return renewed, resting._replace(history=history)
+    return renewed, with_changes(state, resting)
 
 
 def _next_step(problem: Installation, state: InstalledState) -> float:
@@ -272,7 +269,7 @@ def _history_row(
     shaft = reaction(result.interface, ~on_base)[1]
     kinematics = problem.model.kinematics
     whole = WHOLE_PILE[kinematics]
-    weight = buried_weight(problem.pile, tip_depth, kinematics)
+    weight = buried_weight(problem.pile, tip_depth, kinematics, problem.ground.water_table)
     return {
         "penetration": penetration,
         "crowd_force": whole * (base + shaft - weight),

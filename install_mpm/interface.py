@@ -11,6 +11,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from install_mpm.constitutive import coulomb_interface
 from install_mpm.record import Field
 
 
@@ -48,7 +49,9 @@ class InterfacePoints(NamedTuple):
     parameters: Annotated[
         np.ndarray,
         Field(
-            ("interface_point", 5), "SI", "normal and shear stiffness, cohesion, tan phi, tan psi"
+            ("interface_point", coulomb_interface.N_PARAMETERS),
+            "SI",
+            "normal and shear stiffness, cohesion, tan phi, tan psi, tensile limit, smoothing",
         ),
     ]
     part: Annotated[np.ndarray, Field(("interface_point",), "", "PilePart", "int64")]
@@ -76,7 +79,13 @@ def no_interface(dim: int) -> tuple[InterfaceElements, InterfacePoints]:
     elements = InterfaceElements(no_nodes, no_index, *facet_rule(3, 3))
     vectors = np.zeros((0, dim))
     points = InterfacePoints(
-        vectors, vectors, np.zeros(0), vectors, np.zeros((0, 5)), no_index, np.zeros(0)
+        vectors,
+        vectors,
+        np.zeros(0),
+        vectors,
+        np.zeros((0, coulomb_interface.N_PARAMETERS)),
+        no_index,
+        np.zeros(0),
     )
     return elements, points
 

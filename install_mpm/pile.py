@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from annotated_types import Ge, Gt
 
-from install_mpm.conventions import Kinematics, Unit
+from install_mpm.conventions import WATER_UNIT_WEIGHT, Kinematics, Unit
 
 
 class PilePart(IntEnum):
@@ -59,15 +59,21 @@ def tangent_of(normals: np.ndarray) -> np.ndarray:
 
 
 def buried_weight(
-    pile: Pile, tip_depth: float, kinematics: Kinematics = Kinematics.PLANE_STRAIN
+    pile: Pile,
+    tip_depth: float,
+    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+    water_table: float | None = None,
 ) -> float:
     """Return the weight in N below the surface: of the half wall per metre run, or all of the pile.
 
-    The latter in axisymmetry, where forces are those of the whole pile.
+    The latter in axisymmetry, where forces are those of the whole pile.  What is below the depth
+    ``water_table`` in m, if there is one, weighs less by the water it displaces, because stresses
+    are then those in excess of the hydrostatic pressure.
     """
     is_round = kinematics == Kinematics.AXISYMMETRIC
     area = np.pi * pile.half_width**2 if is_round else pile.half_width
-    return pile.unit_weight * float(area) * tip_depth
+    wet = 0.0 if water_table is None else max(tip_depth - water_table, 0.0)
+    return float(area) * (pile.unit_weight * tip_depth - WATER_UNIT_WEIGHT * wet)
 
 
 class PileMotion(NamedTuple):

@@ -11,7 +11,6 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from install_mpm.background_mesh import BackgroundMesh, cell_quality
-from install_mpm.history import History
 from install_mpm.interface import InterfacePoints
 from install_mpm.location import relocate
 from install_mpm.material_points import MaterialPoints, cauchy_stress
@@ -63,12 +62,15 @@ def carried_tractions(old: InterfacePoints, new: InterfacePoints) -> InterfacePo
     return new._replace(traction=traction)
 
 
-def with_changes(history: History, before: InstalledState, after: MaterialPoints) -> History:
-    """Return the history, its last row told what the new mesh has changed since ``before``."""
+def with_changes(before: InstalledState, after: InstalledState) -> InstalledState:
+    """Return the state ``after``, the last row of its history told what has changed."""
+    history = after.history
     stress, force = history.remesh_stress_change.copy(), history.remesh_force_change.copy()
-    stress[-1] = stress_change(before.material_points, after)
+    stress[-1] = stress_change(before.material_points, after.material_points)
     force[-1] = history.crowd_force[-1] - before.history.crowd_force[-1]
-    return history._replace(remesh_stress_change=stress, remesh_force_change=force)
+    return after._replace(
+        history=history._replace(remesh_stress_change=stress, remesh_force_change=force)
+    )
 
 
 def stress_change(before: MaterialPoints, after: MaterialPoints) -> float:

@@ -35,6 +35,7 @@ def check(case: Case) -> None:
     _check_headroom(case)
     _check_step(case)
     _check_programmes(case)
+    _check_interface(case)
     _check_solver(case)
 
 
@@ -150,6 +151,16 @@ def _check_step(case: Case) -> None:
             f"installation.step {step:g} m is larger than half the smallest cell "
             f"(background_mesh.size_at_pile {size:g} m); "
             f"make it {LARGEST_STEP * size:g} m or smaller"
+        )
+
+
+def _check_interface(case: Case) -> None:
+    law = case.interface
+    if law.tensile_strength is not None and law.smoothing_stress == 0.0:
+        raise CaseError(
+            f"interface.tensile_strength {law.tensile_strength:g} Pa needs an "
+            "interface.smoothing_stress, over which adhesion falls to zero as the interface opens; "
+            'set it, e.g. to "100 Pa"'
         )
 
 

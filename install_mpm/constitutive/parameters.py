@@ -46,13 +46,16 @@ class VonMises:
     """Undrained clay: Hencky elastic, perfectly plastic at ``undrained_shear_strength``.
 
     The strength at the original depth d of the material is ``undrained_shear_strength + gradient *
-    d``; it travels with the material as a state variable.
+    d``; it travels with the material as a state variable.  Shearing takes it down to its value
+    over ``sensitivity``, 95 % of the way at the plastic shear strain ``remoulding_strain``.
     """
 
     youngs_modulus: Stiffness
     poissons_ratio: PoissonsRatio
     undrained_shear_strength: Annotated[float, Unit("Pa"), Gt(0)]
     undrained_shear_strength_gradient: Annotated[float, Unit("Pa/m"), Ge(0)] = 0.0
+    sensitivity: Annotated[float, Ge(1)] = 1.0
+    remoulding_strain: Annotated[float, Gt(0)] = 20.0
     model: Literal["von_mises"] = "von_mises"
 
 
@@ -68,6 +71,8 @@ class Tresca:
     poissons_ratio: PoissonsRatio
     undrained_shear_strength: Annotated[float, Unit("Pa"), Gt(0)]
     undrained_shear_strength_gradient: Annotated[float, Unit("Pa/m"), Ge(0)] = 0.0
+    sensitivity: Annotated[float, Ge(1)] = 1.0
+    remoulding_strain: Annotated[float, Gt(0)] = 20.0
     model: Literal["tresca"] = "tresca"
 
 
@@ -211,8 +216,8 @@ class CoulombInterface:
 
     The cohesion is ``cohesion + adhesion_factor * undrained_shear_strength`` of the adjacent
     ground; undrained clay has ``adhesion_factor`` alpha and no friction.  Without friction the
-    interface also carries tension (it is bonded in the normal direction); with friction the tension
-    ends at the apex c / tan(phi).
+    interface also carries tension (it is bonded in the normal direction), unless
+    ``tensile_strength`` limits it; with friction the tension ends at the apex c / tan(phi).
     """
 
     normal_stiffness: Annotated[float, Unit("Pa/m"), Gt(0)]
@@ -221,3 +226,13 @@ class CoulombInterface:
     adhesion_factor: Annotated[float, Ge(0)] = 0.0
     friction_angle: Annotated[float, Unit("rad"), Ge(0), Lt(1.5)] = 0.0
     dilation_angle: Annotated[float, Unit("rad"), Ge(0), Lt(1.5)] = 0.0
+    smoothing_stress: Annotated[float, Unit("Pa"), Ge(0)] = 0.0
+    """Contact pressure below which opening is smooth; zero for the exact return to the apex.
+
+    It has to be positive where ``tensile_strength`` limits the tension.
+    """
+    tensile_strength: Annotated[float | None, Unit("Pa"), Ge(0)] = None
+    """Largest tension; zero for an interface that opens without any.
+
+    As it opens, what it cuts off from the strength falls to zero over the ``smoothing_stress``.
+    """

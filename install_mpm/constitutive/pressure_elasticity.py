@@ -9,7 +9,7 @@ strain has a stress and every stress a strain.
 The shear modulus is a state variable.  If it is constant the law has a stored energy and no closed
 elastic cycle makes or takes work.  If Poisson's ratio is given instead, G = r K(p) of the last
 accepted state: the rate law of the textbooks, exact in the limit of small steps, in which a closed
-cycle of p and q may make work (Zytynski, Randolph, Nova and Wroth 1978).  The deviatoric elastic
+cycle of p and q may make work (Zytynski et al. 1978).  The deviatoric elastic
 strain is then kept as dev(tau) / (2 G) of the current G.
 """
 

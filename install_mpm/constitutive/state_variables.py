@@ -16,7 +16,7 @@ class StateVariable(NamedTuple):
 
 
 STATE_VARIABLES = {
-    "undrained_shear_strength": StateVariable("Pa", "strength carried by the material"),
+    "undrained_shear_strength": StateVariable("Pa", "undisturbed strength carried by the material"),
     "plastic_shear_strain": StateVariable("", "accumulated plastic shear strain sqrt(2) |d eps_p|"),
     "plastic_log_volume": StateVariable("", "ln(1 + void ratio) less the elastic volume strain"),
     "opening": StateVariable("", "part of it that closes before the soil carries pressure again"),

@@ -1,11 +1,12 @@
-"""Perfectly plastic Tresca solid for undrained clay, exact at the edges, in closed form.
+"""Tresca solid for undrained clay, exact at the edges.
 
     f = tau_1 - tau_3 - 2 s_u <= 0 ,   tau_1 >= tau_2 >= tau_3 principal stresses
 
 The return leaves the principal directions and the mean stress as they are.  It ends on a plane of
 the hexagonal prism, where tau_1 and tau_3 have come nearer by the same amount, or, if they would
 pass tau_2, on an edge, where two principal stresses are equal and s_u gives all three deviators
-(de Souza Neto, Peric and Owen 2008, section 8.1).
+(de Souza Neto, Peric and Owen 2008, section 8.1).  With constant strength the return is in closed
+form; the strength of clay that is remoulded (``remoulding``) is found by Newton's method.
 """
 
 from __future__ import annotations
@@ -22,6 +23,12 @@ from install_mpm.constitutive.elastic import (  # the elastic part of the law is
     elastic_tangent,
 )
 from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE, SQRT2, from_mandel, trace
+from install_mpm.constitutive.remoulding import (
+    MAX_ITERATIONS,
+    REMOULDED,
+    TOLERANCE,
+    remoulded_strength,
+)
 from install_mpm.constitutive.von_mises import (  # and so are parameters and state
     PLASTIC_SHEAR,
     STATE_VARIABLES,
@@ -32,7 +39,7 @@ from install_mpm.constitutive.von_mises import (  # and so are parameters and st
 )
 
 NOT_FINITE = 1
-"""Status: the trial strain is not finite."""
+"""Status: the trial strain or the strength it leaves is not finite."""
 
 __all__ = [
     "STATE_VARIABLES",
@@ -67,7 +74,8 @@ def yield_function(stress, parameters, state):
     """Return f in Pa; zero or negative is admissible."""
     values, vectors = np.empty(3), np.empty((3, 3))
     major, _, minor = principal(stress, values, vectors)
-    return values[major] - values[minor] - 2.0 * state[STRENGTH]
+    strength, _ = remoulded_strength(state[STRENGTH], state[PLASTIC_SHEAR], parameters)
+    return values[major] - values[minor] - 2.0 * strength
 
 
 @jit
@@ -77,7 +85,8 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
     elastic_tangent(parameters, tangent)
     elastic_strain[:] = trial_strain
     state[:] = state_old
-    strength, shear = state_old[STRENGTH], parameters[SHEAR]
+    strength, _ = remoulded_strength(state_old[STRENGTH], state_old[PLASTIC_SHEAR], parameters)
+    shear = parameters[SHEAR]
     if deviator_norm(stress) <= SQRT2 * strength:
         return 0  # the cylinder of von Mises lies inside the prism
 
@@ -90,9 +99,10 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
         return NOT_FINITE
 
     returned, principal_tangent = np.empty(3), np.empty((3, 3))
-    _return_principal(
-        trial, major, middle, minor, strength, parameters, returned, principal_tangent
-    )
+    if not _return_softened(
+        trial, major, middle, minor, strength, parameters, state_old, returned, principal_tangent
+    ):
+        return NOT_FINITE
     plastic = 0.0
     elastic_strain[:] = 0.0
     stress[:] = 0.0
@@ -109,8 +119,55 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
 
 
 @jit
-def _return_principal(trial, major, middle, minor, strength, parameters, returned, tangent):
-    """Fill deviators (3,) of the returned stress and d(stress)/d(strain) (3, 3), principal axes."""
+def _return_softened(
+    trial, major, middle, minor, strength, parameters, state_old, returned, tangent
+):
+    """Fill what ``_return_principal`` fills, with the strength that the return leaves.
+
+    ``strength`` in Pa is that before it.  Returns whether it was found: s_u = s_u(xi), xi = xi_old
+    + sqrt(2) |eps_p(s_u)|, by Newton's method.  With c = d(returned)/d(s_u) and n = eps_p / |eps_p|
+    the derivatives of xi are -c.n / (sqrt(2) G) by s_u and sqrt(2) n by the trial strain.
+    """
+    shear = parameters[SHEAR]
+    mean = (trial[0] + trial[1] + trial[2]) / 3.0
+    plastic, by_strength = np.empty(3), np.empty(3)
+    for _ in range(MAX_ITERATIONS):
+        _return_principal(
+            trial, major, middle, minor, strength, parameters, returned, tangent, by_strength
+        )
+        if parameters[REMOULDED] == 1.0:
+            return True
+        norm = along = 0.0
+        for a in range(3):
+            plastic[a] = trial[a] - mean - returned[a] / (2.0 * shear)
+            norm += plastic[a] * plastic[a]
+            along += plastic[a] * by_strength[a]
+        norm = np.sqrt(norm)
+        if norm == 0.0:
+            return True
+        new, slope = remoulded_strength(
+            state_old[STRENGTH], state_old[PLASTIC_SHEAR] + SQRT2 * norm, parameters
+        )
+        stiffness = 1.0 + slope * along / (norm * SQRT2 * shear)
+        if stiffness <= 0.0 or not np.isfinite(stiffness):
+            return False
+        if abs(new - strength) <= TOLERANCE * state_old[STRENGTH]:
+            for a in range(3):
+                for b in range(3):
+                    tangent[a, b] += by_strength[a] * slope * SQRT2 * plastic[b] / norm / stiffness
+            return True
+        strength += (new - strength) / stiffness
+    return False
+
+
+@jit
+def _return_principal(
+    trial, major, middle, minor, strength, parameters, returned, tangent, by_strength
+):
+    """Fill deviators (3,) of the returned stress and d(stress)/d(strain) (3, 3), principal axes.
+
+    ``by_strength`` (3,) is filled with the derivatives of the deviators by the strength.
+    """
     bulk, shear = parameters[BULK], parameters[SHEAR]
     mean = (trial[0] + trial[1] + trial[2]) / 3.0
     between = 2.0 * shear * (trial[middle] - mean)
@@ -119,11 +176,16 @@ def _return_principal(trial, major, middle, minor, strength, parameters, returne
     if between >= centre + strength:  # edge of equal major and middle stress
         returned[major] = returned[middle] = 2.0 / 3.0 * strength
         returned[minor] = -4.0 / 3.0 * strength
+        by_strength[major] = by_strength[middle] = 2.0 / 3.0
+        by_strength[minor] = -4.0 / 3.0
         return
     if between <= centre - strength:  # edge of equal middle and minor stress
         returned[major] = 4.0 / 3.0 * strength
         returned[middle] = returned[minor] = -2.0 / 3.0 * strength
+        by_strength[major] = 4.0 / 3.0
+        by_strength[middle] = by_strength[minor] = -2.0 / 3.0
         return
+    by_strength[major], by_strength[middle], by_strength[minor] = 1.0, 0.0, -1.0
     returned[major], returned[minor] = centre + strength, centre - strength
     returned[middle] = between
     # on the plane 2 G I_dev loses what moves major and minor stress apart

@@ -1,9 +1,9 @@
-"""Perfectly plastic von Mises solid for undrained clay, backward Euler with consistent tangent.
+"""Von Mises solid for undrained clay, backward Euler with consistent tangent.
 
     f = |s| - sqrt(2) s_u <= 0 ,   s = dev(tau)
 
 so that the shear strength in simple shear and in plane strain is s_u (Simo and Hughes 1998, box
-3.2).
+3.2).  The strength is constant, or falls as the clay is remoulded (``remoulding``).
 """
 
 from __future__ import annotations
@@ -20,18 +20,28 @@ from install_mpm.constitutive.elastic import (  # the elastic part of the law is
 )
 from install_mpm.constitutive.mandel import SQRT2, trace
 from install_mpm.constitutive.parameters import UndrainedClay
+from install_mpm.constitutive.remoulding import (
+    MAX_ITERATIONS,
+    TOLERANCE,
+    pack_remoulding,
+    remoulded_strength,
+)
 
 STATE_VARIABLES = ("undrained_shear_strength", "plastic_shear_strain")
-"""Strength carried by the material in Pa; accumulated plastic shear strain sqrt(2) |d eps_p|."""
+"""Undisturbed strength in Pa; accumulated plastic shear strain sqrt(2) |d eps_p|."""
 
 STRENGTH, PLASTIC_SHEAR = 0, 1
+
+NOT_RETURNED = 1
+"""Status: not finite, or the clay softens faster than it unloads elastically."""
 
 __all__ = ["elastic_strain_from_stress", "initial_state", "pack", "update_stress", "yield_function"]
 
 
 def pack(parameters: UndrainedClay) -> np.ndarray:
-    """Return the packed parameters, bulk and shear modulus in Pa; the strength is a state."""
-    return elastic.pack(parameters)
+    """Return the packed parameters (4,): moduli in Pa, remoulding; the strength is a state."""
+    softening = pack_remoulding(parameters.sensitivity, parameters.remoulding_strain)
+    return np.concatenate([elastic.pack(parameters), softening])
 
 
 def initial_state(parameters: UndrainedClay, depth: np.ndarray, stress: np.ndarray) -> np.ndarray:
@@ -56,7 +66,8 @@ def deviator_norm(stress):
 @jit
 def yield_function(stress, parameters, state):
     """Return f in Pa; zero or negative is admissible."""
-    return deviator_norm(stress) - SQRT2 * state[STRENGTH]
+    strength, _ = remoulded_strength(state[STRENGTH], state[PLASTIC_SHEAR], parameters)
+    return deviator_norm(stress) - SQRT2 * strength
 
 
 @jit
@@ -68,12 +79,15 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
     state[:] = state_old
 
     trial_norm = deviator_norm(stress)
-    radius = SQRT2 * state_old[STRENGTH]
-    if trial_norm <= radius:
+    strength, _ = remoulded_strength(state_old[STRENGTH], state_old[PLASTIC_SHEAR], parameters)
+    if trial_norm <= SQRT2 * strength:
         return 0
 
     shear = parameters[SHEAR]
     mean = trace(stress) / 3.0
+    radius, softening = _returned_radius(trial_norm, parameters, state_old)
+    if softening <= -1.0 or not np.isfinite(radius):
+        return NOT_RETURNED
     plastic_strain = (trial_norm - radius) / (2.0 * shear)
     shrink = radius / trial_norm
     direction = np.empty(6)
@@ -83,13 +97,38 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
         elastic_strain[i] -= plastic_strain * direction[i]
     state[PLASTIC_SHEAR] += SQRT2 * plastic_strain
 
-    # D = K 1x1 + 2G r/|s_tr| (I_dev - n x n); the elastic tangent already holds K 1x1 + 2G I_dev
+    # D = K 1x1 + 2G r/|s_tr| (I_dev - n x n) + 2G dr/d|s_tr| n x n
+    # the elastic tangent already holds K 1x1 + 2G I_dev
     loss = 2.0 * shear * (1.0 - shrink)
+    along = 2.0 * shear * (shrink - softening / (1.0 + softening))
     for i in range(6):
         tangent[i, i] -= loss
         for j in range(6):
-            tangent[i, j] -= 2.0 * shear * shrink * direction[i] * direction[j]
+            tangent[i, j] -= along * direction[i] * direction[j]
     for i in range(3):
         for j in range(3):
             tangent[i, j] += loss / 3.0
     return 0
+
+
+@jit
+def _returned_radius(trial_norm, parameters, state_old):
+    """Return the radius r in Pa after the return, and dr/d|eps_p| over 2G; NaN if there is none.
+
+    |s_tr| - 2G |eps_p| = r(xi) with xi = xi_old + sqrt(2) |eps_p|, by Newton's method.
+    """
+    shear = parameters[SHEAR]
+    undisturbed, before = state_old[STRENGTH], state_old[PLASTIC_SHEAR]
+    strength, _ = remoulded_strength(undisturbed, before, parameters)
+    radius = SQRT2 * strength
+    for _ in range(MAX_ITERATIONS):
+        plastic_strain = (trial_norm - radius) / (2.0 * shear)
+        strength, slope = remoulded_strength(
+            undisturbed, before + SQRT2 * plastic_strain, parameters
+        )
+        softening = slope / shear  # d(sqrt(2) s_u)/d|eps_p| over 2G
+        excess = SQRT2 * strength - radius
+        if abs(excess) <= TOLERANCE * trial_norm or softening <= -1.0:
+            return radius, softening
+        radius += excess / (1.0 + softening)
+    return np.nan, 0.0

@@ -189,7 +189,8 @@ def test_turning_the_tangential_axes_turns_the_traction(states, make_rotation):
 def test_cohesion_is_the_share_of_the_strength_beside_it():
     law = CoulombInterface(KN, KS, 1e3, 0.5, FRICTION, DILATION)
     packed = coulomb_interface.pack(law, np.array([10e3, 20e3]))
-    expected = [KN, KS, 6e3, np.tan(FRICTION), np.tan(DILATION)]
+    friction = np.tan(FRICTION)
+    expected = [KN, KS, 6e3, friction, np.tan(DILATION), 6e3 / friction, 0.0]
     np.testing.assert_allclose(packed[0], expected)
     assert packed[1, 2] == 11e3
 

@@ -171,7 +171,7 @@ def test_reaction_is_minus_the_traction_on_the_soil():
         normal=np.array([[-1.0, 0.0], [0.0, 1.0]]),
         area=np.array([2.0, 3.0]),
         traction=np.array([[0.0, -10.0], [0.0, -4.0]]),
-        parameters=np.zeros((2, 5)),
+        parameters=np.zeros((2, 7)),
         part=np.array([1, 0]),
         covered=np.array([1.0, 0.5]),
     )

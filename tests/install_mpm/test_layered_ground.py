@@ -14,10 +14,9 @@ from install_mpm.constitutive.parameters import (
     Tresca,
     VonMises,
 )
-from install_mpm.conventions import GRAVITY, Kinematics
+from install_mpm.conventions import GRAVITY, WATER_UNIT_WEIGHT, Kinematics
 from install_mpm.geostatic import first_beyond_strength, geostatic_gradient, undisturbed_state
 from install_mpm.ground import (
-    WATER_UNIT_WEIGHT,
     Ground,
     GroundError,
     Layer,
@@ -36,7 +35,7 @@ from install_mpm.installation import advance_pile
 from install_mpm.installation_setup import geostatic_state, set_up
 from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.options import BackgroundMeshOptions, Box, InstallationProgramme, Numerics
-from install_mpm.pile import Pile
+from install_mpm.pile import Pile, buried_weight
 from install_mpm.seeding import seed_points
 
 CLAY = Tresca(6e6, 0.49, 30e3, 1e3)
@@ -208,3 +207,10 @@ def test_points_of_two_soils_are_never_merged(make_grid):
         before, after = points.material == row, merged.material == row
         assert merged.volume[after].sum() == pytest.approx(points.volume[before].sum())
     assert set(np.unique(np.round(merged.elastic_log_strain[:, 0, 0], 9))) == {-2e-3, 1e-3}
+
+
+def test_a_pile_below_the_water_table_weighs_less_by_the_water_it_displaces():
+    pile = Pile(0.5, 2.0, 18e3)
+    dry = buried_weight(pile, 3.0)
+    assert dry - buried_weight(pile, 3.0, water_table=1.0) == pytest.approx(0.5 * 2.0 * 9810.0)
+    assert buried_weight(pile, 3.0, water_table=4.0) == dry

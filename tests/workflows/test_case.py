@@ -143,6 +143,7 @@ def test_another_soil_is_chosen_by_its_tag():
         ),
         ("numerics.max_iterations=2.5", "numerics.max_iterations", "valid integer"),
         ("numerics.tolerance=1e-3", "numerics.tolerance", "<= 1e-06"),
+        ("interface.tensile_strength=0 kPa", "interface.tensile_strength", "set it, e.g."),
         ("service.programmes=[]", "service.programmes", "add at least one"),
         ("service.programmes.uplift.name=push_on", "service.programmes", "are named 'push_on'"),
         ("service.programmes.uplift.start=later", "start", 'one of "released", "equilibrated"'),

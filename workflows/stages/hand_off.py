@@ -38,7 +38,9 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     installed: InstalledState = read_checked(directory, INSTALLED, case)
 
     def make_problem(mesh: FEMesh) -> ServiceProblem:
-        weight = buried_weight(case.pile, float(installed.pile.tip_depth), case.kinematics)
+        weight = buried_weight(
+            case.pile, float(installed.pile.tip_depth), case.kinematics, case.ground.water_table
+        )
         return ServiceProblem(
             mesh, case.ground, case.interface, weight, case.service.numerics,
             kinematics=case.kinematics,

@@ -32,7 +32,9 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         If a step does not converge; nothing is written.
     """
     handed_off: HandedOffState = read_checked(directory, HANDED_OFF, case)
-    weight = buried_weight(case.pile, float(handed_off.pile.tip_depth), case.kinematics)
+    weight = buried_weight(
+        case.pile, float(handed_off.pile.tip_depth), case.kinematics, case.ground.water_table
+    )
     problem = ServiceProblem(
         handed_off.mesh, case.ground, case.interface, weight, case.service.numerics,
         kinematics=case.kinematics,

@@ -35,7 +35,7 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     depth = case.final_tip_depth
     layers = boundary_depths(case.ground)
     mesh = make_mesh(case.pile, depth, case.box, case.handoff, level_surface(), layers)
-    weight = buried_weight(case.pile, depth, case.kinematics)
+    weight = buried_weight(case.pile, depth, case.kinematics, case.ground.water_table)
     problem = ServiceProblem(
         mesh, case.ground, case.interface, weight, case.service.numerics,
         kinematics=case.kinematics,

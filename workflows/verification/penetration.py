@@ -6,6 +6,7 @@ without weight; the rigid pile fills x < half_width above its tip and moves down
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -95,6 +96,8 @@ class PenetrationResult(NamedTuple):
     start: tuple[MaterialPoints, BackgroundMesh]
     body: Body
     """State at the end."""
+    failure: str = ""
+    """Why the run has ended early; empty if it has not."""
 
     def reaction_at(self, penetration: float) -> float:
         """Return the reaction in N at the step that ended at ``penetration`` (m).
@@ -110,36 +113,50 @@ class PenetrationResult(NamedTuple):
         return float(self.reaction[found[0]])
 
 
-def penetrate(problem: Penetration) -> PenetrationResult:
+def penetrate(
+    problem: Penetration,
+    *,
+    may_stop: bool = False,
+    observe: Callable[[float, Body], None] = lambda penetration, body: None,
+) -> PenetrationResult:
     """Return the result of all steps; a step that does not converge is halved.
+
+    After every accepted step ``observe`` is called with the penetration in m and the state.
 
     Raises
     ------
     ProblemNotSolvedError
-        If a step does not converge after ``problem.max_cuts`` halvings.
+        If a step does not converge after ``problem.max_cuts`` halvings, unless it ``may_stop``.
     """
     body = start_body(problem)
     start = (body.points, body.mesh)
     target, done, size, cuts, since = problem.steps * problem.step, 0.0, problem.step, 0, 0
     record: list[tuple[float, float, tuple[float, ...]]] = []
+    failure = ""
     while done < target - ON_BOUNDARY:
         # after cuts, steps still end on the multiples of the full step
         ahead = problem.step * (np.floor(done / problem.step + 1e-6) + 1.0) - done
         advance_by = min(size, ahead)
         try:
             moved, force, residuals = _advance(problem, body, done, advance_by)
-        except ProblemNotSolvedError:
+        except ProblemNotSolvedError as error:
             if size <= problem.step * 0.5**problem.max_cuts:
-                raise
+                if not may_stop:
+                    raise
+                failure = str(error)
+                break
             size, cuts, since = advance_by / 2.0, cuts + 1, 0
             body = body._replace(start=body.start * 0.5)
             continue
         body, done, since = moved, done + advance_by, since + 1
         record.append((done, force, residuals))
+        observe(done, body)
         if since >= STEPS_BEFORE_GROWTH and size < problem.step:
             size, since = min(2.0 * size, problem.step), 0
     depths, forces, histories = zip(*record, strict=True)
-    return PenetrationResult(np.array(depths), np.array(forces), cuts, histories, start, body)
+    return PenetrationResult(
+        np.array(depths), np.array(forces), cuts, histories, start, body, failure
+    )
 
 
 def start_body(problem: Penetration) -> Body:

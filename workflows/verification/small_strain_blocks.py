@@ -62,7 +62,7 @@ def make_blocks(
         Lower side, then upper side of the interface; two nodes where the other side is rigid.
     soil
         Elastic law of the blocks.
-    interface_parameters : (5,)
+    interface_parameters : (7,)
         Packed parameters of ``coulomb_interface``.
     unit_weight, vertical_stress
         Weight in N/m^3 and uniform initial stress in Pa (tension positive), also on the interface.
