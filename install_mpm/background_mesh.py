@@ -6,6 +6,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from install_mpm.cells import TET_EDGES, TRIANGLE_EDGES
 from install_mpm.record import Field
 
 
@@ -28,60 +29,114 @@ class BackgroundMesh(NamedTuple):
 
 
 def make_background_mesh(nodes: np.ndarray, cell_nodes: np.ndarray) -> BackgroundMesh:
-    """Return the mesh of triangles (3 or 6 nodes) at its reference position, neighbours found."""
-    return straightened(
+    """Return the mesh of simplices at its reference position, neighbours found.
+
+    Triangles have 3 or 6 nodes, tetrahedra 10.
+    """
+    dim = nodes.shape[1]
+    mesh = straightened(
         BackgroundMesh(
             nodes=np.ascontiguousarray(nodes, dtype=np.float64),
             reference_nodes=np.ascontiguousarray(nodes, dtype=np.float64),
             cell_nodes=np.ascontiguousarray(cell_nodes, dtype=np.int64),
-            cell_neighbours=_neighbours(cell_nodes[:, :3]),
+            cell_neighbours=_neighbours(cell_nodes[:, : dim + 1]),
         )
     )
+    return mesh._replace(reference_nodes=mesh.nodes.copy())
+
+
+FACETS_OPPOSITE = {3: [[1, 2], [2, 0], [0, 1]], 4: [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]}
+"""Vertices of the facet opposite each vertex, by number of vertices; outward in a tetrahedron."""
 
 
 def facets_opposite_vertices(vertices: np.ndarray) -> np.ndarray:
-    """Return the end nodes (n, 3, 2) of the facets of triangles, facet v opposite vertex v."""
-    return vertices[:, [[1, 2], [2, 0], [0, 1]]]
+    """Return the vertices (n, n_vertices, dim) of the facets of simplices.
+
+    Facet v lies opposite vertex v.
+    """
+    return vertices[:, FACETS_OPPOSITE[vertices.shape[1]]]
+
+
+def facet_edge_nodes(mesh: BackgroundMesh, cell: np.ndarray, facet: np.ndarray) -> np.ndarray:
+    """Return the mid-side nodes (n, n_edges) of facets of quadratic cells.
+
+    The node of the edge from the first to the second vertex of the facet comes first.
+    """
+    n_vertices = mesh.nodes.shape[1] + 1
+    edges = _edges(n_vertices)
+    index = {frozenset(edge): n_vertices + local for local, edge in enumerate(edges)}
+    rows = []
+    for corners in FACETS_OPPOSITE[n_vertices]:
+        n_edges = len(corners) if len(corners) > 2 else 1
+        following = corners[1:] + corners[:1]
+        pairs = list(zip(corners, following, strict=True))[:n_edges]
+        rows.append([index[frozenset(pair)] for pair in pairs])
+    return mesh.cell_nodes[cell[:, None], np.array(rows)[facet]]
+
+
+def _edges(n_vertices: int) -> tuple[tuple[int, int], ...]:
+    """Return the vertices at the ends of each mid-side node of a quadratic simplex."""
+    return TRIANGLE_EDGES if n_vertices == 3 else TET_EDGES
 
 
 def _neighbours(vertices: np.ndarray) -> np.ndarray:
-    """Return the cell across each facet, (n_cells, 3), -1 at the boundary."""
-    n_cells = len(vertices)
-    facets = np.sort(facets_opposite_vertices(vertices).reshape(-1, 2), axis=1)
-    order = np.lexsort((facets[:, 1], facets[:, 0]))
+    """Return the cell across each facet, (n_cells, n_vertices), -1 at the boundary."""
+    n_cells, n_vertices = vertices.shape
+    facets = np.sort(facets_opposite_vertices(vertices).reshape(-1, n_vertices - 1), axis=1)
+    order = np.lexsort(facets.T[::-1])
     is_pair = (facets[order[1:]] == facets[order[:-1]]).all(axis=1)
     first, second = order[:-1][is_pair], order[1:][is_pair]
-    neighbours = np.full(3 * n_cells, -1, dtype=np.int64)
-    neighbours[first], neighbours[second] = second // 3, first // 3
-    return neighbours.reshape(n_cells, 3)
+    neighbours = np.full(n_vertices * n_cells, -1, dtype=np.int64)
+    neighbours[first], neighbours[second] = second // n_vertices, first // n_vertices
+    return neighbours.reshape(n_cells, n_vertices)
 
 
 def straightened(mesh: BackgroundMesh) -> BackgroundMesh:
-    """Return the mesh with the mid-side nodes of 6-node triangles in the middle of their edges."""
-    if mesh.cell_nodes.shape[1] != 6:
+    """Return the mesh with the mid-side nodes of quadratic cells in the middle of their edges."""
+    n_vertices = mesh.nodes.shape[1] + 1
+    if mesh.cell_nodes.shape[1] == n_vertices:
         return mesh
     nodes = mesh.nodes.copy()
-    for local in range(3):
-        ends = mesh.cell_nodes[:, [local, (local + 1) % 3]]
-        nodes[mesh.cell_nodes[:, 3 + local]] = nodes[ends].mean(axis=1)
+    for local, ends in enumerate(_edges(n_vertices)):
+        nodes[mesh.cell_nodes[:, n_vertices + local]] = nodes[mesh.cell_nodes[:, ends]].mean(axis=1)
     return mesh._replace(nodes=nodes)
 
 
 def cell_quality(mesh: BackgroundMesh) -> np.ndarray:
-    """Return 2 r_in / r_out of each triangle (n_cells,): 1 equilateral, 0 flat, < 0 inverted."""
-    corners = mesh.nodes[mesh.cell_nodes[:, :3]]
-    edges = np.roll(corners, -1, axis=1) - corners
-    length = np.linalg.norm(edges, axis=2)
-    area = (edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]) / 2.0
-    quality: np.ndarray = (
-        16.0 * area**2 * np.sign(area) / (length.sum(axis=1) * length.prod(axis=1))
-    )
+    """Return dim r_in / r_out of each cell (n_cells,): 1 regular, 0 flat, < 0 inverted."""
+    volume, facet_area = _measures(mesh)
+    dim = mesh.nodes.shape[1]
+    inradius = dim * np.abs(volume) / facet_area.sum(axis=1)
+    quality: np.ndarray = np.sign(volume) * dim * inradius / _circumradius(mesh)
     return quality
 
 
 def smallest_altitude(mesh: BackgroundMesh) -> float:
-    """Return the smallest height of a triangle in m: the step must stay below half of it."""
-    corners = mesh.nodes[mesh.cell_nodes[:, :3]]
-    edges = np.roll(corners, -1, axis=1) - corners
-    area = (edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]) / 2.0
-    return float((2.0 * area / np.linalg.norm(edges, axis=2).max(axis=1)).min())
+    """Return the smallest height of a cell in m: the step must stay below half of it."""
+    volume, facet_area = _measures(mesh)
+    return float((mesh.nodes.shape[1] * volume / facet_area.max(axis=1)).min())
+
+
+def _measures(mesh: BackgroundMesh) -> tuple[np.ndarray, np.ndarray]:
+    """Return the volume (n_cells,) of the cells and the areas (n_cells, n_vertices) of facets."""
+    dim = mesh.nodes.shape[1]
+    vertices = mesh.cell_nodes[:, : dim + 1]
+    corners = mesh.nodes[vertices]
+    volume = np.linalg.det(corners[:, 1:] - corners[:, :1]) / (2.0 if dim == 2 else 6.0)
+    facets = mesh.nodes[facets_opposite_vertices(vertices)]
+    if dim == 2:
+        return volume, np.linalg.norm(facets[:, :, 1] - facets[:, :, 0], axis=2)
+    first, second = facets[:, :, 1] - facets[:, :, 0], facets[:, :, 2] - facets[:, :, 0]
+    return volume, np.linalg.norm(np.cross(first, second), axis=2) / 2.0
+
+
+def _circumradius(mesh: BackgroundMesh) -> np.ndarray:
+    """Return the radius (n_cells,) in m of the circle or sphere through the vertices."""
+    dim = mesh.nodes.shape[1]
+    corners = mesh.nodes[mesh.cell_nodes[:, : dim + 1]]
+    edges = corners[:, 1:] - corners[:, :1]
+    is_flat = np.abs(np.linalg.det(edges)) < 1e-300
+    edges = np.where(is_flat[:, None, None], np.eye(dim), edges)
+    centre = np.linalg.solve(edges, (edges**2).sum(axis=2)[:, :, None] / 2.0)[:, :, 0]
+    radius: np.ndarray = np.where(is_flat, np.inf, np.linalg.norm(centre, axis=1))
+    return radius

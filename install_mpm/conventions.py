@@ -11,6 +11,8 @@ import hashlib
 from dataclasses import dataclass
 from enum import IntEnum
 
+import numpy as np
+
 GRAVITY = 9.81
 """Gravitational acceleration in m/s^2, acting in the negative vertical direction."""
 
@@ -39,6 +41,17 @@ class Unit:
 def dimension(kinematics: Kinematics) -> int:
     """Return the number of stored coordinates: 2, or 3 in three dimensions."""
     return 3 if kinematics == Kinematics.THREE_D else 2
+
+
+def rotation_matrix(angle: float, dim: int) -> np.ndarray:
+    """Return the rotation (dim, dim) by ``angle`` in rad.
+
+    Right-handed about +z in space, anticlockwise in the stored axes of two dimensions.
+    """
+    matrix = np.eye(dim)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    matrix[:2, :2] = [[cosine, -sine], [sine, cosine]]
+    return matrix
 
 
 def vertical_axis(kinematics: Kinematics) -> int:

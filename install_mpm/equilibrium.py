@@ -13,7 +13,7 @@ from install_mpm.constitutive.pressure_elasticity import bulk_modulus
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
-from install_mpm.interface import InterfacePoints, frames
+from install_mpm.interface import Contact, InterfacePoints, soil_displacement, step_axes
 from install_mpm.kernels.carry import body_force
 from install_mpm.kernels.cell_records import CellOptions
 from install_mpm.kernels.equilibrium import evaluate_cells
@@ -56,6 +56,12 @@ class StepEquilibrium(NamedTuple):
     """Interface traction at the end of the step, local axes, (n_interface_points, dim) in Pa."""
     reaction: np.ndarray
     """Support force at prescribed dofs, zero elsewhere, (n_nodes, dim) in N."""
+    internal_force: np.ndarray
+    """Of the stresses at the end of the step, (n_nodes, dim) in N."""
+    external_force: np.ndarray
+    """Weight and nodal loads, (n_nodes, dim) in N."""
+    contact: Contact
+    """What pile and soil do to each other at the end of the step."""
 
 
 def youngs_modulus(materials: Materials) -> np.ndarray:
@@ -122,6 +128,9 @@ def find_equilibrium(
         system.trial,
         system.traction,
         reaction,
+        system.internal,
+        system.external,
+        system.contact(),
     )
 
 
@@ -163,8 +172,7 @@ class _StepSystem:
         self.interface, self.is_prescribed = interface, prescribed.is_prescribed
         self.options = cell_options(fill, points, model)
         self.pile_displacement = rigid_displacement(motion, interface.position)
-        self.mid_frame = frames(interface.normal, motion.rotation / 2.0)
-        self.end_frame = frames(interface.normal, motion.rotation)
+        self.rotation = motion.rotation
         self.trial = empty_trial(points)
         self.traction = np.zeros_like(interface.traction)
         self.cell_force = np.zeros((n_cells, n_cell_nodes, dim))
@@ -172,6 +180,7 @@ class _StepSystem:
         self.element_force = np.zeros((n_elements, n_element_nodes, dim))
         self.element_stiffness = np.zeros((n_elements, n_element_nodes, dim, n_element_nodes, dim))
         self.external = np.zeros((n_nodes, dim))
+        self.internal = np.zeros((n_nodes, dim))
         self.out_of_balance = np.zeros((n_nodes, dim))
         body_force(mesh.cell_nodes, points, model.gravity, self.external)
         if prescribed.force is not None:
@@ -200,6 +209,7 @@ class _StepSystem:
             scatter_force(force.reshape(dofs.shape), dofs, total)
             scatter_stiffness(stiffness.reshape(slots.shape), slots, values)
         constrain(pattern.indptr, pattern.indices, self.is_free.ravel(), values)
+        self.internal = internal.reshape(nodal.shape)
         out_of_balance = internal + interface - self.external.ravel()
         self.out_of_balance = out_of_balance.reshape(nodal.shape)
         supports = out_of_balance[self.is_prescribed.ravel()]
@@ -207,15 +217,28 @@ class _StepSystem:
         residual = np.where(self.is_free.ravel(), out_of_balance, 0.0)
         return Evaluation(residual, values, float(reference) or 1.0, is_admissible)
 
+    def contact(self) -> Contact:
+        """Return the forces between pile and soil at the last evaluation."""
+        area = (self.interface.area * self.interface.covered)[:, None]
+        return Contact(
+            self.interface.position + self.soil_displacement,
+            -area * np.einsum("pij,pi->pj", self.axes.traction, self.traction),
+            -area * self.traction[:, -1:] * self.axes.traction[:, -1],
+        )
+
     def _evaluate_blocks(self, nodal: np.ndarray) -> None:
         """Fill force and stiffness of all cells and interface elements."""
         evaluate_cells(
             self.mesh.cell_nodes, self.fill.is_active, self.points, nodal, self.materials,
             self.options, self.cell_force, self.cell_stiffness, self.trial,
         )  # fmt: skip
+        self.soil_displacement = soil_displacement(self.model.elements, nodal)
+        self.axes = step_axes(
+            self.interface, self.model.elements.is_swept, self.rotation, self.soil_displacement
+        )
         evaluate_interface(
             self.model.elements.nodes, self.model.elements.shape_values,
             self.interface.area * self.interface.covered, self.interface.parameters,
-            self.interface.traction, self.mid_frame, self.end_frame, self.pile_displacement,
+            self.interface.traction, self.axes, self.pile_displacement,
             nodal, self.element_force, self.element_stiffness, self.traction,
         )  # fmt: skip

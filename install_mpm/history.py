@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, Any, NamedTuple, TypeVar
 
 import numpy as np
 
-from install_mpm.record import Field
+from install_mpm.record import Field, fields_of
 
 
 def _per_step(unit: str, doc: str, dtype: str = "float64", *, may_be_nan: bool = False) -> Field:
@@ -69,7 +69,10 @@ class History(NamedTuple):
     ]
 
 
-def append(history: History, row: dict[str, object]) -> History:
+Row = TypeVar("Row", bound=tuple[Any, ...])
+
+
+def append(history: Row, row: dict[str, object]) -> Row:
     """Return the history with one more step; ``row`` maps every field to its value."""
 
     def joined(name: str) -> np.ndarray:
@@ -80,7 +83,7 @@ def append(history: History, row: dict[str, object]) -> History:
             old, new = (_padded(values, width) for values in (old, new))
         return np.concatenate([old, new])
 
-    return History(*(joined(name) for name in History._fields))
+    return type(history)(*(joined(name) for name in fields_of(type(history))))
 
 
 def _padded(values: np.ndarray, width: int) -> np.ndarray:
@@ -88,13 +91,11 @@ def _padded(values: np.ndarray, width: int) -> np.ndarray:
     return np.pad(values, ((0, 0), (0, width - values.shape[1])), constant_values=np.nan)
 
 
-def empty_history() -> History:
-    """Return a history without steps."""
-    from install_mpm.record import fields_of
-
-    return History(
+def empty_history(record: type[Row]) -> Row:
+    """Return a history of a kind without steps."""
+    return record(
         *(
             np.zeros((0,) * len(field.shape), dtype=field.dtype)
-            for field in fields_of(History).values()
+            for field in fields_of(record).values()
         )
     )

@@ -38,12 +38,10 @@ from install_mpm.pile import WHOLE_PILE, Pile, PileMotion, PilePart, buried_weig
 from install_mpm.remeshing import is_worn, on_new_mesh, with_changes
 from install_mpm.state_file import InstalledState, PileState, StepControl
 from install_mpm.step import StepResult, step
+from install_mpm.step_control import accepted_control, cut_control
 
 GEOSTATIC_RESIDUAL = 1e-8
 """Largest relative out-of-balance force of undisturbed ground; round-off leaves about 1e-12."""
-
-STEPS_BEFORE_GROWTH = 4
-"""Steps that must converge after a cut before the step is doubled again."""
 
 
 class NotConvergedError(RuntimeError):
@@ -54,8 +52,10 @@ class InstallationProgress(NamedTuple):
     """What an observer is told after each accepted step."""
 
     load_step: int
-    penetration: float
+    travel: float
+    """What the target is measured by: the penetration, or the way of a screw pile's rim."""
     target: float
+    penetration: float
     crowd_force: float
     iterations: int
     cuts: int
@@ -215,19 +215,13 @@ def _cut(
             f"{result.equilibrium.newton.residuals[-1]:.1e}); use a smaller installation.step "
             "or a finer background mesh"
         )
-    return control._replace(
-        step=np.array(advance / 2.0),
-        cuts=control.cuts + 1,
-        steps_since_cut=np.array(0),
-        displacement_per_step=control.displacement_per_step * (advance / 2.0 / control.step),
-    )
+    return cut_control(control, advance)
 
 
 def _accept(
     problem: Installation, state: InstalledState, advance: float, result: StepResult
 ) -> InstalledState:
     """Return the state after a converged step, with its row of the history."""
-    control = state.control
     interface = pile_surface.follow(
         result.interface, problem.model.elements, result.mesh, problem.ground, problem.law,
         problem.model.kinematics,
@@ -235,21 +229,15 @@ def _accept(
     penetration = float(state.pile.penetration) + advance
     tip_depth = problem.pile.embedment + penetration
     force = reaction(result.interface)
-    size, displacement = control.step, control.displacement_per_step
-    if advance:
-        displacement = result.equilibrium.displacement * (float(size) / advance)
-    steps_since_cut = control.steps_since_cut + 1
-    if steps_since_cut >= STEPS_BEFORE_GROWTH and size < problem.programme.step:
-        grown = np.minimum(2.0 * size, problem.programme.step)
-        displacement, size = displacement * (grown / size), grown
-        steps_since_cut = np.array(0)
     return InstalledState(
         material_points=result.points,
         background_mesh=result.mesh,
         interface=interface,
         pile=PileState(np.array(penetration), np.array(0.0), np.array(tip_depth), force),
         history=append(state.history, _history_row(problem, state, result, penetration, tip_depth)),
-        control=StepControl(np.array(size), np.array(0), steps_since_cut, displacement),
+        control=accepted_control(
+            state.control, result.equilibrium.displacement, advance, problem.programme.step
+        ),
         case_text=state.case_text,
         kinematics=state.kinematics,
     )
@@ -292,8 +280,9 @@ def _progress(problem: Installation, state: InstalledState) -> InstallationProgr
     history = state.history
     return InstallationProgress(
         load_step=len(history.penetration) - 1,
-        penetration=float(state.pile.penetration),
+        travel=float(state.pile.penetration),
         target=problem.programme.penetration,
+        penetration=float(state.pile.penetration),
         crowd_force=float(history.crowd_force[-1]),
         iterations=int(history.iterations[-1]),
         cuts=int(history.cuts[-1]),

@@ -17,7 +17,7 @@ from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme
 from install_mpm.geostatic import geostatic_gradient
 from install_mpm.ground import GroundProfile, boundary_depths, soils_of
-from install_mpm.history import empty_history
+from install_mpm.history import History, empty_history
 from install_mpm.interface import InterfacePoints
 from install_mpm.linear_solvers import SOLVERS
 from install_mpm.mesh_generation import generate_background_mesh
@@ -157,7 +157,7 @@ def geostatic_state(
         background_mesh=mesh,
         interface=interface,
         pile=PileState(np.array(0.0), np.array(0.0), np.array(problem.pile.embedment), np.zeros(2)),
-        history=empty_history(),
+        history=empty_history(History),
         control=StepControl(
             np.array(problem.programme.step), np.array(0), np.array(0), np.zeros_like(mesh.nodes)
         ),

@@ -11,8 +11,13 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
+from install_mpm.cells import CellType, reference_cell, shape_functions
 from install_mpm.constitutive import coulomb_interface
+from install_mpm.conventions import rotation_matrix
 from install_mpm.record import Field
+
+FACES_ROUND = 0.7
+"""Cosine of normal and circumferential direction above which a surface faces round the axis."""
 
 
 class InterfaceElements(NamedTuple):
@@ -25,7 +30,13 @@ class InterfaceElements(NamedTuple):
     shape_values: np.ndarray
     """Shape functions of a facet at its integration points, (n_facet_points, n_facet_nodes)."""
     weights: np.ndarray
-    """Weights of the rule on a facet of unit length, (n_facet_points,)."""
+    """Weights of the rule on a facet of unit size, (n_facet_points,)."""
+    is_swept: np.ndarray | None = None
+    """Points (n_points,) of surfaces that a rotation of the pile maps onto themselves; None: none.
+
+    On a cylinder, a cone or a helicoid the normal is that of the place where the *soil* is, on any
+    other surface it turns with the pile.
+    """
 
 
 class InterfacePoints(NamedTuple):
@@ -61,10 +72,21 @@ class InterfacePoints(NamedTuple):
 
 
 def facet_rule(n_facet_nodes: int, n_points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return shape values (n_points, n_facet_nodes) and weights of a Gauss rule on a line.
+    """Return shape values (n_points, n_facet_nodes) and weights of a rule on a facet of unit size.
 
-    Nodes are the two ends, then the mid-side; eq. (5) of the paper is the two-node case.
+    On a line, with its two ends and the mid-side, it is a Gauss rule; eq. (5) of the paper is the
+    two-node case.  On a triangle of six nodes, with vertices first, it is the rule of three points,
+    one near each vertex.
+
+    Raises
+    ------
+    ValueError
+        If a triangle is asked for another number of points than three.
     """
+    if n_facet_nodes == 6:
+        if n_points != 3:
+            raise ValueError(f"a triangle has a rule of 3 points, not of {n_points}")
+        return _triangle_rule()
     xi, weights = np.polynomial.legendre.leggauss(n_points)
     ends = np.column_stack([(1.0 - xi) / 2.0, (1.0 + xi) / 2.0])
     if n_facet_nodes == 2:
@@ -73,10 +95,20 @@ def facet_rule(n_facet_nodes: int, n_points: int) -> tuple[np.ndarray, np.ndarra
     return values, weights / 2.0
 
 
+def _triangle_rule() -> tuple[np.ndarray, np.ndarray]:
+    """Return shape values (3, 6) and weights of the three-point rule on a six-node triangle."""
+    triangle = reference_cell(CellType.TRI6)
+    values = np.empty((3, 6))
+    for row, xi in zip(values, triangle.integration_coordinates, strict=True):
+        shape_functions(triangle.cell_type, xi, row)
+    return values, np.full(3, 1 / 3)
+
+
 def no_interface(dim: int) -> tuple[InterfaceElements, InterfacePoints]:
     """Return an interface without elements, for problems that have none."""
-    no_nodes, no_index = np.zeros((0, 3), dtype=np.int64), np.zeros(0, dtype=np.int64)
-    elements = InterfaceElements(no_nodes, no_index, *facet_rule(3, 3))
+    n_facet_nodes = 3 if dim == 2 else 6
+    no_nodes, no_index = np.zeros((0, n_facet_nodes), dtype=np.int64), np.zeros(0, dtype=np.int64)
+    elements = InterfaceElements(no_nodes, no_index, *facet_rule(n_facet_nodes, 3))
     vectors = np.zeros((0, dim))
     points = InterfacePoints(
         vectors,
@@ -91,28 +123,131 @@ def no_interface(dim: int) -> tuple[InterfaceElements, InterfacePoints]:
 
 
 def frames(normals: np.ndarray, rotation: float) -> np.ndarray:
-    """Return the local axes (n, 2, 2) of interface points.
+    """Return the local axes (n, 2, 2) of interface points in two dimensions.
 
     Rows tangent and normal, turned by ``rotation``.
-
-    The gap is measured in the frame of the middle of a step, the traction acts in that of its end:
-    a chord of a circle has no normal component in the mid-step frame, and a false penetration in
-    any other.
     """
-    cosine, sine = np.cos(rotation), np.sin(rotation)
-    normal = normals @ np.array([[cosine, sine], [-sine, cosine]])
+    normal = normals @ rotation_matrix(rotation, 2).T
     tangent = np.column_stack([-normal[:, 1], normal[:, 0]])
     return np.stack([tangent, normal], axis=1)
 
 
+def frames_around_axis(normals: np.ndarray, positions: np.ndarray, rotation: float) -> np.ndarray:
+    """Return the local axes (n, 3, 3) of interface points on a pile whose axis is the z axis.
+
+    Rows two tangents and the normal, turned by ``rotation`` about the axis.  The first tangent is
+    the part of the circumferential direction that lies in the surface, or of the radial direction
+    where the surface faces round the axis, so the axes turn with the pile.
+    """
+    radius = np.linalg.norm(positions[:, :2], axis=1)
+    away = np.zeros_like(normals)
+    away[:, :2] = positions[:, :2] / np.where(radius > 0.0, radius, 1.0)[:, None]
+    away[radius == 0.0] = (1.0, 0.0, 0.0)
+    around = np.column_stack([-away[:, 1], away[:, 0], away[:, 2]])
+    faces_round = np.abs((around * normals).sum(axis=1)) > FACES_ROUND
+    first = np.where(faces_round[:, None], away, around)
+    first = first - (first * normals).sum(axis=1)[:, None] * normals
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    axes = np.stack([first, np.cross(normals, first), normals], axis=1)
+    return axes @ rotation_matrix(rotation, 3).T
+
+
+def local_axes(points: InterfacePoints) -> np.ndarray:
+    """Return the local axes (n, dim, dim) of the points: tangents first, normal last."""
+    if points.normal.shape[1] == 2:
+        return frames(points.normal, 0.0)
+    return frames_around_axis(points.normal, points.position, 0.0)
+
+
+class StepAxes(NamedTuple):
+    """Local axes (n, dim, dim) of the interface points in a step."""
+
+    slip: np.ndarray
+    """In which the slip of the step is measured: those of the middle of the way.
+
+    A chord of a circle has no component along the normal of its middle, and a false penetration
+    along any other.
+    """
+    slip_change: np.ndarray
+    """By which the slip changes with the displacement of the soil."""
+    traction: np.ndarray
+    """In which the traction acts on the soil at the end of the step."""
+
+
+def step_axes(
+    points: InterfacePoints, is_swept: np.ndarray | None, rotation: float, soil: np.ndarray
+) -> StepAxes:
+    """Return the local axes in a step in which the pile turns by ``rotation`` (rad).
+
+    ``soil`` (n, dim) is the displacement in m of the soil at the points.  On a surface that is
+    swept onto itself the soil meets the normal of the place where it is, so that pressure on a
+    cylinder has no torque however far the soil stays behind.
+    """
+    start = local_axes(points)
+    if is_swept is None or not rotation:
+        slip = _turned(start, np.full(len(start), rotation / 2.0))
+        return StepAxes(slip, slip, _turned(start, np.full(len(start), rotation)))
+    of_soil = np.where(is_swept, _polar_change(points.position, soil), 0.0)
+    slip = _turned(start, (rotation + of_soil) / 2.0)
+    traction = _turned(start, np.where(is_swept, of_soil, rotation))
+    change = slip.copy()
+    change[is_swept, -1] = traction[is_swept, -1]
+    behind = np.where(is_swept, (rotation - of_soil) / 2.0, 0.0)
+    slip[:, -1] /= np.cos(behind)[:, None]  # so that motion along the radius counts in full
+    return StepAxes(slip, change, traction)
+
+
+def _polar_change(position: np.ndarray, displacement: np.ndarray) -> np.ndarray:
+    """Return the change (n,) in rad of the polar angle by a displacement (n, dim)."""
+    moved = position + displacement
+    cross = position[:, 0] * moved[:, 1] - position[:, 1] * moved[:, 0]
+    change: np.ndarray = np.arctan2(cross, (position[:, :2] * moved[:, :2]).sum(axis=1))
+    return change
+
+
+def _turned(axes: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Return local ``axes`` (n, dim, dim) turned by ``angle`` (n,) in rad, each by its own."""
+    if not angle.any():
+        return axes
+    cosine, sine = np.cos(angle)[:, None], np.sin(angle)[:, None]
+    turned = axes.copy()
+    turned[:, :, 0] = cosine * axes[:, :, 0] - sine * axes[:, :, 1]
+    turned[:, :, 1] = sine * axes[:, :, 0] + cosine * axes[:, :, 1]
+    return turned
+
+
+class Contact(NamedTuple):
+    """Forces between pile and soil at the interface points at the end of a step."""
+
+    position: np.ndarray
+    """Where they act: place of the soil, (n, dim) in m."""
+    force: np.ndarray
+    """Of the soil on the pile, (n, dim) in N."""
+    normal_force: np.ndarray
+    """Its part along the normal, (n, dim) in N."""
+
+
+def soil_displacement(elements: InterfaceElements, displacement: np.ndarray) -> np.ndarray:
+    """Return the displacement (n_points, dim) in m of the soil at the interface points."""
+    n_facet_nodes = elements.shape_values.shape[1]
+    own = displacement[elements.nodes[:, :n_facet_nodes]]
+    of_soil: np.ndarray = np.einsum("qa,eai->eqi", elements.shape_values, own)
+    return of_soil.reshape(-1, displacement.shape[1])
+
+
 def global_traction(points: InterfacePoints) -> np.ndarray:
     """Return the traction that the pile exerts on the soil in global axes, (n, dim) in Pa."""
-    axes = frames(points.normal, 0.0)
-    traction: np.ndarray = np.einsum("pij,pi->pj", axes, points.traction)
+    traction: np.ndarray = np.einsum("pij,pi->pj", local_axes(points), points.traction)
     return traction
+
+
+def force_on_pile(points: InterfacePoints) -> np.ndarray:
+    """Return the force (n, dim) in N of the soil on the pile at every point."""
+    force: np.ndarray = -global_traction(points) * (points.area * points.covered)[:, None]
+    return force
 
 
 def reaction(points: InterfacePoints, selected: np.ndarray | None = None) -> np.ndarray:
     """Return the force (dim,) in N of the soil on the pile, over ``selected`` points or all."""
-    force = -global_traction(points) * (points.area * points.covered)[:, None]
+    force = force_on_pile(points)
     return np.asarray(force.sum(axis=0) if selected is None else force[selected].sum(axis=0))

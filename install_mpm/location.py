@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from install_mpm.background_mesh import BackgroundMesh
+from install_mpm.background_mesh import FACETS_OPPOSITE, BackgroundMesh
 from install_mpm.kernels.locate import PROJECTED, locate_points
 from install_mpm.material_points import MaterialPoints
 
@@ -13,8 +13,9 @@ def locate(points: MaterialPoints, mesh: BackgroundMesh) -> int:
     """Find the cell of every point, in place; return how many were brought back into the mesh."""
     status, before = np.zeros(len(points.cell), dtype=np.int64), points.position.copy()
     locate_points(
-        mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours, points.position, points.cell,
-        points.reference_coordinates, status, np.empty(3),
+        mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours,
+        np.array(FACETS_OPPOSITE[mesh.nodes.shape[1] + 1]), points.position, points.cell,
+        points.reference_coordinates, status,
     )  # fmt: skip
     points.displacement[:] += points.position - before
     return int(np.count_nonzero(status == PROJECTED))

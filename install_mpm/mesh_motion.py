@@ -20,6 +20,8 @@ A mesh whose cells have become too flat is made anew instead: ``remeshing``.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh, straightened
@@ -131,6 +133,46 @@ def expand(
     share = _taper(radius, inner_radius, outer_radius)
     distance = growth * share / np.maximum(radius, inner_radius)
     return straightened(mesh._replace(nodes=nodes + distance[:, None] * outward))
+
+
+class ScrewZones(NamedTuple):
+    """Where the mesh moves with a screw pile, and where it stays."""
+
+    inner_radius: float
+    """Distance from the axis in m within which the mesh takes part in the whole motion."""
+    outer_radius: float
+    """Distance from the axis in m at which the motion has tapered to zero."""
+    rigid_levels: tuple[float, float]
+    """Levels in m, at zero pile motion, between which the mesh goes down with the pile as one."""
+    fixed_levels: tuple[float, float]
+    """Bottom and top in m, which stay at their level."""
+
+
+def screw(
+    mesh: BackgroundMesh, advance: float, angle: float, reset_angle: float, zones: ScrewZones
+) -> BackgroundMesh:
+    """Return the mesh of a pile that went down by ``advance`` (m) and turned by ``angle`` (rad).
+
+    The pile takes the whole of both; they taper linearly to zero between inner and outer radius.
+    Below and above the rigid levels the mesh is compressed and stretched as by eqs (1) and (2).
+    ``reset_angle`` turns the reference mesh as a whole before: a pile is the same body at every
+    angle, so the mesh can be wound back as often as wanted without making a new one.
+    """
+    reference = mesh.reference_nodes
+    radius = np.linalg.norm(reference[:, :2], axis=1)
+    share = _taper(radius, zones.inner_radius, zones.outer_radius)
+    lower, upper = zones.rigid_levels
+    bottom, top = zones.fixed_levels
+    level = np.interp(
+        reference[:, 2],
+        [bottom, lower, upper, top],
+        [bottom, lower - advance, upper - advance, top],
+    )
+    turn = reset_angle + share * (angle - reset_angle)
+    nodes = np.empty_like(reference)
+    nodes[:, :2] = rotate_clockwise(reference[:, :2], -turn)
+    nodes[:, 2] = reference[:, 2] + share * (level - reference[:, 2])
+    return straightened(mesh._replace(nodes=nodes))
 
 
 def _taper(radius: np.ndarray, inner_radius: float, outer_radius: float) -> np.ndarray:

@@ -79,3 +79,19 @@ class Numerics:
     checkpoint_every: Annotated[int, Ge(1)] = 10
     linear_solver: str = "mumps"
     random_seed: int = 0
+
+
+@dataclass(frozen=True)
+class ScrewMeshOptions:
+    """Sizes of the background mesh around a screw pile; a cell is twice as fine as it is large."""
+
+    size_at_edges: Length
+    """Around leading and trailing edges, which govern the torque."""
+    size_at_plate: Length
+    size_at_shaft: Length
+    size_far: Length
+    edge_reach: Length
+    """Distance from the edges within which cells have ``size_at_edges``."""
+    points_per_direction: Annotated[int, Ge(1), Le(3)] = 1
+    """Points per sub-region and direction: a tetrahedron has 4 sub-regions, so 2 gives 32."""
+    random_seed: Annotated[int, Ge(0)] = 0

@@ -9,7 +9,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from annotated_types import Ge, Gt
 
-from install_mpm.conventions import WATER_UNIT_WEIGHT, Kinematics, Unit
+from install_mpm.conventions import WATER_UNIT_WEIGHT, Kinematics, Unit, rotation_matrix
 
 
 class PilePart(IntEnum):
@@ -77,17 +77,17 @@ def buried_weight(
 
 
 class PileMotion(NamedTuple):
-    """Rigid motion of the pile in a step: a rotation about the origin, and a translation."""
+    """Rigid motion of the pile in a step: a rotation about origin or z axis, and a translation."""
 
     translation: np.ndarray
     """(dim,) in m."""
     rotation: float = 0.0
-    """Anticlockwise in the stored axes, in rad."""
+    """In rad, see ``conventions.rotation_matrix``."""
 
 
 def rigid_displacement(motion: PileMotion, position: np.ndarray) -> np.ndarray:
-    """Return the displacement (n, 2) in m of points of the pile at ``position`` (n, 2)."""
-    cosine, sine = np.cos(motion.rotation), np.sin(motion.rotation)
-    turn = np.array([[cosine, -sine], [sine, cosine]])
-    displacement: np.ndarray = position @ (turn - np.eye(2)).T + motion.translation
+    """Return the displacement (n, dim) in m of points of the pile at ``position`` (n, dim)."""
+    dim = position.shape[1]
+    turn = rotation_matrix(motion.rotation, dim) - np.eye(dim)
+    displacement: np.ndarray = position @ turn.T + motion.translation
     return displacement

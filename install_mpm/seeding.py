@@ -35,7 +35,7 @@ def seed_points(
     cells = np.flatnonzero(vertices[:, :, -1].mean(axis=1) < 0.0 if is_soil is None else is_soil)
     origin, edges = vertices[cells, 0], vertices[cells, 1:] - vertices[cells, :1]
     position = origin[:, None] + np.einsum("qv,cvi->cqi", coordinates, edges)
-    cell_volume = np.abs(np.linalg.det(edges)) / 2.0
+    cell_volume = np.abs(np.linalg.det(edges)) * cell.reference_volumes.sum()
     position = position.reshape(-1, cell.dim)
     volume = (cell_volume[:, None] * shares).ravel()
     if kinematics == Kinematics.AXISYMMETRIC:

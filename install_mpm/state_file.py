@@ -15,6 +15,7 @@ from install_mpm.history import History
 from install_mpm.interface import InterfacePoints
 from install_mpm.material_points import MaterialPoints
 from install_mpm.record import Field, StateFileError, read_record, write_record
+from install_mpm.screw_history import ScrewHistory
 from install_mpm.seal import new_state_file, open_state_file
 
 FORMAT = "screwpile-installed-state"
@@ -52,13 +53,14 @@ class InstalledState(NamedTuple):
     background_mesh: BackgroundMesh
     interface: InterfacePoints
     pile: PileState
-    history: History
+    history: Any
+    """``History``, in three dimensions ``ScrewHistory``."""
     control: StepControl
     case_text: str
     kinematics: Kinematics
 
 
-RECORDS = {
+RECORDS: dict[str, type] = {
     "material_points": MaterialPoints,
     "background_mesh": BackgroundMesh,
     "interface": InterfacePoints,
@@ -66,6 +68,14 @@ RECORDS = {
     "history": History,
     "control": StepControl,
 }
+"""Groups of the file; in three dimensions the history is a ``ScrewHistory``."""
+
+
+def records_of(kinematics: Kinematics) -> dict[str, type]:
+    """Return the record type of each group of a state file."""
+    if kinematics == Kinematics.THREE_D:
+        return RECORDS | {"history": ScrewHistory}
+    return RECORDS
 
 
 def case_hash(case_text: str) -> str:
@@ -136,7 +146,7 @@ def read_installed_state(path: Path) -> InstalledState:
         if name not in Kinematics.__members__:
             raise StateFileError(f"{path}: attribute kinematics is {name!r}; write the file again")
         records: dict[str, Any] = {}
-        for group, record_type in RECORDS.items():
+        for group, record_type in records_of(Kinematics[name]).items():
             if group not in file:
                 raise StateFileError(f"{path}: group /{group} is missing; write the file again")
             records[group] = read_record(file[group], record_type)

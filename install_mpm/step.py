@@ -114,8 +114,8 @@ def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation)
     emptier vertex.
     """
     elements = model.elements
-    ends = elements.nodes[:, : min(2, elements.nodes.shape[1])]
-    covered = np.minimum(fill.vertex_fill[ends].min(axis=1, initial=1.0) / LEVEL_FILL, 1.0)
+    vertices = elements.nodes[:, : interface.position.shape[1]]
+    covered = np.minimum(fill.vertex_fill[vertices].min(axis=1, initial=1.0) / LEVEL_FILL, 1.0)
     covered = np.repeat(
         np.where(fill.is_active[elements.cell], covered, 0.0), len(elements.weights)
     )

@@ -25,9 +25,10 @@ from workflows.cross_checks import check
 from workflows.errors import CaseError
 from workflows.overrides import apply_overrides
 from workflows.schema import build, table_of
+from workflows.screw_case import ScrewCase, check_screw_case
 from workflows.toml_text import format_toml
 
-__all__ = ["Case", "CaseError", "case_text", "parse_case", "read_case", "sections_text"]
+__all__ = ["AnyCase", "Case", "CaseError", "case_text", "parse_case", "read_case", "sections_text"]
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,11 @@ class Case:
         return self.pile.embedment + self.installation.penetration
 
 
-def read_case(path: Path, overrides: Iterable[str] = ()) -> tuple[Case, str]:
+AnyCase = Case | ScrewCase
+"""A jacked pile, or a screw pile in space; ``pile.model`` tells them apart."""
+
+
+def read_case(path: Path, overrides: Iterable[str] = ()) -> tuple[AnyCase, str]:
     """Return the case in the TOML file ``path`` after ``--set`` overrides, and its canonical text.
 
     Raises
@@ -73,7 +78,7 @@ def read_case(path: Path, overrides: Iterable[str] = ()) -> tuple[Case, str]:
     return case, case_text(case)
 
 
-def parse_case(text: str, source: str, overrides: Iterable[str] = ()) -> Case:
+def parse_case(text: str, source: str, overrides: Iterable[str] = ()) -> AnyCase:
     """Return the case in TOML ``text``; ``source`` is what errors call it.
 
     Raises
@@ -89,6 +94,10 @@ def parse_case(text: str, source: str, overrides: Iterable[str] = ()) -> Case:
     if changed:
         source += f" with --set {', '.join(changed)}"
     try:
+        if _describes_screw_pile(document):
+            screw_case: ScrewCase = build(ScrewCase, document)
+            check_screw_case(screw_case)
+            return screw_case
         case: Case = build(Case, document)
         check(case)
     except CaseError as error:
@@ -96,7 +105,12 @@ def parse_case(text: str, source: str, overrides: Iterable[str] = ()) -> Case:
     return case
 
 
-def case_text(case: Case) -> str:
+def _describes_screw_pile(document: dict[str, Any]) -> bool:
+    pile = document.get("pile")
+    return isinstance(pile, dict) and pile.get("model") == "screw_pile"
+
+
+def case_text(case: AnyCase) -> str:
     """Return the canonical TOML text: every key, defaults filled in, quantities in SI.
 
     Two spellings of the same case have the same text, and reading it gives the same case.
@@ -104,17 +118,21 @@ def case_text(case: Case) -> str:
     return format_toml(table_of(case))
 
 
-def sections_text(case: Case, keys: Iterable[str]) -> str:
+def sections_text(case: AnyCase, keys: Iterable[str]) -> str:
     """Return the canonical text of some keys only, e.g. of the sections that a stage depends on.
 
-    A key is the name of a section or, dotted, of one key of it.
+    A key is the name of a section or, dotted, of one key of it; a case that has no such section
+    leaves it out.
     """
     table = table_of(case)
-    return format_toml({key.replace(".", "_"): _lookup(table, key) for key in sorted(set(keys))})
+    found = {key.replace(".", "_"): _lookup(table, key) for key in sorted(set(keys))}
+    return format_toml({key: value for key, value in found.items() if value is not None})
 
 
 def _lookup(table: dict[str, Any], key: str) -> Any:
     value: Any = table
     for part in key.split("."):
+        if part not in value:
+            return None
         value = value[part]
     return value

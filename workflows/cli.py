@@ -16,7 +16,7 @@ import typer
 from workflows.environment import prepare
 
 if TYPE_CHECKING:
-    from workflows.case import Case
+    from workflows.case import AnyCase
 
 NOT_MET = 1
 """Exit status after a reference problem that is not within its tolerance."""
@@ -138,8 +138,14 @@ def check(case: CaseFile, overrides: Overrides = None) -> None:
     """Validate a case and forecast its size and time."""
     from workflows.case import read_case
     from workflows.forecast import forecast, print_forecast
+    from workflows.screw_case import ScrewCase
 
     loaded, _ = read_case(case, overrides or ())
+    if isinstance(loaded, ScrewCase):
+        from workflows.screw_forecast import print_screw_forecast, screw_forecast
+
+        print_screw_forecast(loaded, screw_forecast(loaded))
+        return
     print_forecast(loaded, forecast(loaded))
 
 
@@ -230,7 +236,7 @@ def verify(
         raise typer.Exit(NOT_MET)
 
 
-def _load(path: Path, output: Path | None, overrides: list[str] | None) -> tuple[Case, Path]:
+def _load(path: Path, output: Path | None, overrides: list[str] | None) -> tuple[AnyCase, Path]:
     from workflows.case import read_case
 
     case, _ = read_case(path, overrides or ())

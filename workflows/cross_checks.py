@@ -11,6 +11,7 @@ from workflows.errors import CaseError
 
 if TYPE_CHECKING:
     from workflows.case import Case
+    from workflows.screw_case import ScrewCase
 
 LARGEST_STEP = 0.5
 """Largest step over the smallest cell: the pile must not pass more than half a cell at once."""
@@ -29,14 +30,14 @@ def check(case: Case) -> None:
     """
     _check_kinematics(case)
     _check_discretisation(case)
-    _check_ground(case)
+    check_ground(case)
     _check_geometry(case)
     _check_mesh_sizes(case)
     _check_headroom(case)
     _check_step(case)
     _check_programmes(case)
-    _check_interface(case)
-    _check_solver(case)
+    check_interface(case)
+    check_solver(case)
 
 
 def _check_kinematics(case: Case) -> None:
@@ -71,7 +72,14 @@ def _check_discretisation(case: Case) -> None:
         )
 
 
-def _check_ground(case: Case) -> None:
+def check_ground(case: Case | ScrewCase) -> None:
+    """Check that the ground bears its own stress, and that adhesion has a strength to go by.
+
+    Raises
+    ------
+    CaseError
+        Naming the layer, its depth and the remedy.
+    """
     from install_mpm.geostatic import first_beyond_strength
     from install_mpm.ground import strata
     from install_mpm.soil_strength import has_undrained_shear_strength
@@ -154,7 +162,14 @@ def _check_step(case: Case) -> None:
         )
 
 
-def _check_interface(case: Case) -> None:
+def check_interface(case: Case | ScrewCase) -> None:
+    """Check that the interface has what its tensile strength needs.
+
+    Raises
+    ------
+    CaseError
+        If it lacks the smoothing.
+    """
     law = case.interface
     if law.tensile_strength is not None and law.smoothing_stress == 0.0:
         raise CaseError(
@@ -192,7 +207,14 @@ def _check_programmes(case: Case) -> None:
             )
 
 
-def _check_solver(case: Case) -> None:
+def check_solver(case: Case | ScrewCase) -> None:
+    """Check that the linear solver is known.
+
+    Raises
+    ------
+    CaseError
+        If it is not.
+    """
     from install_mpm.linear_solvers import SOLVERS
 
     if case.numerics.linear_solver not in SOLVERS:

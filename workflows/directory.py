@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from workflows.case import Case, case_text, parse_case, sections_text
+from workflows.case import AnyCase, case_text, parse_case, sections_text
 from workflows.errors import CaseError, DirectoryError
 
 CASE = "case.toml"
@@ -55,7 +55,7 @@ def write_text(path: Path, text: str) -> None:
     partial.replace(path)
 
 
-def case_of(directory: Path) -> Case | None:
+def case_of(directory: Path) -> AnyCase | None:
     """Return the case that ``directory`` belongs to, None if it belongs to none yet.
 
     Raises
@@ -74,7 +74,7 @@ def case_of(directory: Path) -> Case | None:
         ) from error
 
 
-def check_ownership(directory: Path, case: Case) -> None:
+def check_ownership(directory: Path, case: AnyCase) -> None:
     """Check that ``directory`` is free or holds results of the same case (maybe with other values).
 
     Raises
@@ -92,13 +92,13 @@ def check_ownership(directory: Path, case: Case) -> None:
         )
 
 
-def claim(directory: Path, case: Case) -> None:
+def claim(directory: Path, case: AnyCase) -> None:
     """Write the canonical text of ``case`` into ``directory``, which is made if need be."""
     directory.mkdir(parents=True, exist_ok=True)
     write_text(directory / CASE, case_text(case))
 
 
-def case_in_file(path: Path, text: str) -> Case:
+def case_in_file(path: Path, text: str) -> AnyCase:
     """Return the case that the state file ``path`` carries as ``text``.
 
     Raises
@@ -114,7 +114,7 @@ def case_in_file(path: Path, text: str) -> Case:
         ) from error
 
 
-def check_belongs(path: Path, text: str, case: Case, keys: Iterable[str]) -> None:
+def check_belongs(path: Path, text: str, case: AnyCase, keys: Iterable[str]) -> None:
     """Check that the case ``text`` of the state file ``path`` has the same ``keys`` as ``case``.
 
     Raises

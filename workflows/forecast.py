@@ -103,10 +103,11 @@ def print_forecast(case: Case, sizes: Forecast, console: Console | None = None) 
     console = console or Console()
     console.print(table)
     console.print(
-        f"memory about {sizes.memory / 1e9:.1f} GB, time about {_duration(sizes.seconds)} "
+        f"memory about {sizes.memory / 1e9:.1f} GB, time about {duration(sizes.seconds)} "
         "on two cores (the first run also compiles, a minute or two)"
     )
 
 
-def _duration(seconds: float) -> str:
+def duration(seconds: float) -> str:
+    """Return a time in s as text, in minutes if it is long."""
     return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.1f} min"

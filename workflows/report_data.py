@@ -43,6 +43,8 @@ def read_results(directory: Path) -> Results:
     if not directory.is_dir():
         raise DirectoryError(f"{directory}: no such directory; run `screwpile run` first")
     case = case_for(directory, names.INSTALLED)
+    if not isinstance(case, Case):
+        raise DirectoryError(f"{directory} holds a screw pile; run `screwpile report` on it")
     return Results(
         case=case,
         case_text=case_text(case),

@@ -33,7 +33,9 @@ EXTENSIVE = {
 }
 """The same for what is counted per metre run of a wall, or for the whole of a round pile."""
 
-FORCE_UNIT = {kinematics: units["N"][1] for kinematics, units in EXTENSIVE.items()}
+FORCE_UNIT = {kinematics: units["N"][1] for kinematics, units in EXTENSIVE.items()} | {
+    Kinematics.THREE_D: "kN"
+}
 """Display unit of a force."""
 
 PER_LENGTH = {

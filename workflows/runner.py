@@ -8,9 +8,9 @@ from importlib import import_module
 from pathlib import Path
 
 from workflows import directory as names
-from workflows.case import Case, sections_text
+from workflows.case import AnyCase, sections_text
 from workflows.directory import check_ownership, claim
-from workflows.errors import DirectoryError
+from workflows.errors import CaseError, DirectoryError
 from workflows.manifest import (
     StageRecord,
     code_hash,
@@ -20,6 +20,7 @@ from workflows.manifest import (
     write_manifest,
 )
 from workflows.progress import Reporter
+from workflows.screw_case import ScrewCase
 from workflows.state_files import STATE_FILES, case_for, check_existing, read_checked
 
 
@@ -90,12 +91,37 @@ STAGES = (
 )  # fmt: skip
 
 
-def stage_named(name: str) -> Stage:
-    """Return the stage called ``name``."""
-    return next(stage for stage in STAGES if stage.name == name)
+SCREW_STAGES = (
+    Stage(
+        "install", "screwpile install CASE", "screw the pile into the ground", names.INSTALL_KEYS,
+        reads=(), writes=(names.INSTALLED,),
+        sources=("install_mpm", "workflows/stages/install.py"),
+    ),
+)  # fmt: skip
+"""Stages of a screw pile."""
 
 
-def inputs_of(stage: Stage, case: Case, directory: Path) -> dict[str, str]:
+def stages_of(case: AnyCase) -> tuple[Stage, ...]:
+    """Return the stages of a case, in order."""
+    return SCREW_STAGES if isinstance(case, ScrewCase) else STAGES
+
+
+def stage_named(name: str, case: AnyCase) -> Stage:
+    """Return the stage of ``case`` called ``name``.
+
+    Raises
+    ------
+    CaseError
+        If a case of its kind has no such stage.
+    """
+    for stage in stages_of(case):
+        if stage.name == name:
+            return stage
+    known = ", ".join(stage.name for stage in stages_of(case))
+    raise CaseError(f"{case.title}: there is no stage {name!r} for a screw pile; it has {known}")
+
+
+def inputs_of(stage: Stage, case: AnyCase, directory: Path) -> dict[str, str]:
     """Return the hashes of everything that decides the outputs of ``stage``."""
     return {
         "case": text_hash(sections_text(case, stage.keys)),
@@ -106,7 +132,7 @@ def inputs_of(stage: Stage, case: Case, directory: Path) -> dict[str, str]:
     }
 
 
-def is_up_to_date(stage: Stage, case: Case, directory: Path) -> bool:
+def is_up_to_date(stage: Stage, case: AnyCase, directory: Path) -> bool:
     """Return whether the outputs of ``stage`` are there and would be the same if it ran again."""
     record = read_manifest(directory).stages.get(stage.name)
     if record is None or not all((directory / file).exists() for file in stage.writes):
@@ -115,7 +141,7 @@ def is_up_to_date(stage: Stage, case: Case, directory: Path) -> bool:
     return record.outputs == outputs and record.inputs == inputs_of(stage, case, directory)
 
 
-def check_present(stage: Stage, directory: Path) -> None:
+def check_present(stage: Stage, case: AnyCase, directory: Path) -> None:
     """Check that the files that ``stage`` reads are there.
 
     Raises
@@ -125,11 +151,11 @@ def check_present(stage: Stage, directory: Path) -> None:
     """
     for file in stage.reads:
         if not (directory / file).exists():
-            command = _writer(file).command
+            command = _writer(file, case).command
             raise DirectoryError(f"{directory / file}: no such file; run `{command}` first")
 
 
-def check_made_from_each_other(stage: Stage, case: Case, directory: Path) -> None:
+def check_made_from_each_other(stage: Stage, case: AnyCase, directory: Path) -> None:
     """Check that the files that ``stage`` reads were made from the files that are there now.
 
     Raises
@@ -139,7 +165,7 @@ def check_made_from_each_other(stage: Stage, case: Case, directory: Path) -> Non
     """
     records = read_manifest(directory).stages
     for file in stage.reads:
-        writer = _writer(file)
+        writer = _writer(file, case)
         inputs = records[writer.name].inputs if writer.name in records else {}
         for source in writer.reads:
             path = directory / source
@@ -152,11 +178,11 @@ def check_made_from_each_other(stage: Stage, case: Case, directory: Path) -> Non
             )
 
 
-def _writer(file: str) -> Stage:
-    return next(stage for stage in STAGES if file in stage.writes)
+def _writer(file: str, case: AnyCase) -> Stage:
+    return next(stage for stage in stages_of(case) if file in stage.writes)
 
 
-def run_stage(stage: Stage, case: Case, directory: Path, reporter: Reporter) -> None:
+def run_stage(stage: Stage, case: AnyCase, directory: Path, reporter: Reporter) -> None:
     """Run one stage and record it in the manifest.
 
     Raises
@@ -164,7 +190,7 @@ def run_stage(stage: Stage, case: Case, directory: Path, reporter: Reporter) -> 
     DirectoryError, StateFileError
         If a file that it reads is missing, damaged, out of date or of another case.
     """
-    check_present(stage, directory)
+    check_present(stage, case, directory)
     check_made_from_each_other(stage, case, directory)
     inputs = inputs_of(stage, case, directory)
     start = time.perf_counter()
@@ -182,7 +208,7 @@ def run_stage(stage: Stage, case: Case, directory: Path, reporter: Reporter) -> 
 
 
 def run_case(
-    case: Case, directory: Path, reporter: Reporter | None = None, *, resume: bool = False
+    case: AnyCase, directory: Path, reporter: Reporter | None = None, *, resume: bool = False
 ) -> None:
     """Run all stages in order; those whose inputs did not change are skipped.
 
@@ -197,7 +223,7 @@ def run_case(
     claim(directory, case)
     if not resume:
         (directory / names.CHECKPOINT).unlink(missing_ok=True)
-    for stage in STAGES:
+    for stage in stages_of(case):
         if is_up_to_date(stage, case, directory):
             reporter.say(f"{stage.name:<9} {stage.doing}: up to date")
         else:
@@ -206,7 +232,7 @@ def run_case(
 
 def run_from_case(
     name: str,
-    case: Case,
+    case: AnyCase,
     directory: Path,
     reporter: Reporter | None = None,
     *,
@@ -223,7 +249,7 @@ def run_from_case(
     claim(directory, case)
     if name == "install" and not resume:
         (directory / names.CHECKPOINT).unlink(missing_ok=True)
-    run_stage(stage_named(name), case, directory, reporter or Reporter())
+    run_stage(stage_named(name, case), case, directory, reporter or Reporter())
 
 
 def run_from_files(name: str, directory: Path, reporter: Reporter | None = None) -> None:
@@ -236,7 +262,21 @@ def run_from_files(name: str, directory: Path, reporter: Reporter | None = None)
     """
     if not directory.is_dir():
         raise DirectoryError(f"{directory}: no such directory; run `screwpile install` first")
-    stage = stage_named(name)
-    check_present(stage, directory)
-    first = next(file for file in stage.reads if file in STATE_FILES)
-    run_stage(stage, case_for(directory, first), directory, reporter or Reporter())
+    case = case_for(directory, _first_state_file(name, directory))
+    run_stage(stage_named(name, case), case, directory, reporter or Reporter())
+
+
+def _first_state_file(name: str, directory: Path) -> str:
+    """Return the first state file that a stage reads; all kinds of case have the same.
+
+    Raises
+    ------
+    DirectoryError
+        If it is not there.
+    """
+    reads = next(stage.reads for stage in STAGES if stage.name == name)
+    first = next(file for file in reads if file in STATE_FILES)
+    if not (directory / first).exists():
+        command = next(stage.command for stage in STAGES if first in stage.writes)
+        raise DirectoryError(f"{directory / first}: no such file; run `{command}` first")
+    return first

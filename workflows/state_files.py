@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from workflows import directory as names
-from workflows.case import Case
+from workflows.case import AnyCase
 from workflows.directory import case_of, check_belongs
 from workflows.manifest import file_hash, read_manifest
 
@@ -43,7 +43,7 @@ STATE_FILES = {
 }
 
 
-def read_checked(directory: Path, name: str, case: Case) -> Any:
+def read_checked(directory: Path, name: str, case: AnyCase) -> Any:
     """Return the record in a state file of ``directory`` that belongs to ``case``.
 
     Raises
@@ -57,7 +57,7 @@ def read_checked(directory: Path, name: str, case: Case) -> Any:
     return record
 
 
-def case_for(directory: Path, name: str) -> Case:
+def case_for(directory: Path, name: str) -> AnyCase:
     """Return the case of a stage that starts from the state file ``name`` of ``directory``.
 
     It is ``case.toml`` of the directory if there is one, else the case that the file carries.
@@ -71,7 +71,7 @@ def case_for(directory: Path, name: str) -> Case:
     return case_of(directory) or names.case_in_file(directory / name, text)
 
 
-def check_existing(directory: Path, case: Case) -> None:
+def check_existing(directory: Path, case: AnyCase) -> None:
     """Check the state files in ``directory`` that are not those which screwpile wrote there.
 
     Raises

@@ -18,6 +18,7 @@ def deform_cell(first, last, cell_nodes, points, displacement, options, scratch)
         Jbar, or -1 if a point has collapsed.
     """
     scratch.mean_divergence[:, :] = 0.0
+    dim = displacement.shape[1]
     volume = 0.0
     deformed_volume = 0.0
     for q in range(first, last):
@@ -36,7 +37,7 @@ def deform_cell(first, last, cell_nodes, points, displacement, options, scratch)
         for i in range(3):
             increment[i, i] += 1.0
         jacobian = determinant(increment)
-        if jacobian < SMALLEST_VOLUME_RATIO or increment[2, 2] <= 0.0:
+        if jacobian < SMALLEST_VOLUME_RATIO or (dim == 2 and increment[2, 2] <= 0.0):
             return -1.0
         scratch.jacobian[local] = jacobian
         push_gradients(points.shape_gradients[q], increment, jacobian, scratch.gradients[local])
@@ -74,8 +75,8 @@ def push_gradients(start, increment, jacobian, current):
         for j in range(3):
             total = 0.0
             for i in range(3):
-                n, m = (i + 1) % 3, (i + 2) % 3
-                k, l = (j + 1) % 3, (j + 2) % 3
+                n, m = (j + 1) % 3, (j + 2) % 3
+                k, l = (i + 1) % 3, (i + 2) % 3
                 cofactor = increment[n, k] * increment[m, l] - increment[n, l] * increment[m, k]
                 total += cofactor * start[a, i] / jacobian
             current[a, j] = total

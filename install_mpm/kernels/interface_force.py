@@ -1,4 +1,4 @@
-"""Interface elements: f = B^T t A and K = B^T R_end^T D R_mid B A (paper, eqs 8-10)."""
+"""Interface elements: f = B^T R_t^T t A and K = B^T R_t^T D R_w B A (paper, eqs 8-10)."""
 
 from __future__ import annotations
 
@@ -10,15 +10,16 @@ from install_mpm.constitutive.coulomb_interface import update_traction
 
 @jit
 def evaluate_interface(
-    nodes, shape_values, area, parameters, traction_old, mid_frame, end_frame,
-    pile_displacement, displacement, force, stiffness, traction,
+    nodes, shape_values, area, parameters, traction_old, axes, pile_displacement, displacement,
+    force, stiffness, traction,
 ):  # fmt: skip
     """Fill ``force`` (n_elements, n_nodes, dim).
 
     Its ``stiffness`` and the ``traction`` (n_points, dim).
 
-    ``pile_displacement`` (n_points, dim) is the rigid motion of the points in the step; elements
-    with pile-side nodes take the motion from ``displacement`` (n_nodes, dim) as well.
+    ``axes`` are the ``StepAxes``.  ``pile_displacement`` (n_points, dim) is the rigid motion of the
+    points in the step; elements with pile-side nodes take the motion from ``displacement``
+    (n_nodes, dim) as well.
     """
     n_points_per_element, n_facet_nodes = shape_values.shape
     n_nodes = nodes.shape[1]
@@ -46,14 +47,14 @@ def evaluate_interface(
             for i in range(dim):
                 local_slip[i] = 0.0
                 for j in range(dim):
-                    local_slip[i] += mid_frame[q, i, j] * slip[j]
+                    local_slip[i] += axes.slip[q, i, j] * slip[j]
             update_traction(local_slip, parameters[q], traction_old[q], traction[q], tangent)
-            _rotate_tangent(tangent, end_frame[q], mid_frame[q], global_tangent)
+            _rotate_tangent(tangent, axes.traction[q], axes.slip_change[q], global_tangent)
             for a in range(n_nodes):
                 for i in range(dim):
                     for k in range(dim):
                         force[e, a, i] += (
-                            operator[a] * area[q] * end_frame[q, k, i] * traction[q, k]
+                            operator[a] * area[q] * axes.traction[q, k, i] * traction[q, k]
                         )
                     for b in range(n_nodes):
                         for j in range(dim):
@@ -63,13 +64,13 @@ def evaluate_interface(
 
 
 @jit
-def _rotate_tangent(tangent, end_frame, mid_frame, rotated):
-    """Fill ``rotated`` = R_end^T D R_mid."""
+def _rotate_tangent(tangent, traction_axes, slip_axes, rotated):
+    """Fill ``rotated`` = R_traction^T D R_slip."""
     dim = tangent.shape[0]
     for i in range(dim):
         for j in range(dim):
             total = 0.0
             for k in range(dim):
                 for m in range(dim):
-                    total += end_frame[k, i] * tangent[k, m] * mid_frame[m, j]
+                    total += traction_axes[k, i] * tangent[k, m] * slip_axes[m, j]
             rotated[i, j] = total

@@ -107,7 +107,7 @@ def _carry_cell(
         for i in range(3):
             increment[i, i] += 1.0
         ratio = determinant(increment)
-        if ratio < SMALLEST_VOLUME_RATIO or increment[2, 2] <= 0.0:
+        if ratio < SMALLEST_VOLUME_RATIO or (nodes.shape[1] == 2 and increment[2, 2] <= 0.0):
             return COLLAPSED
         if has_mean_dilatation:
             scale_volume(increment, volume_ratio / ratio, n_axes)

@@ -7,7 +7,15 @@ import pytest
 
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.constitutive.parameters import CoulombInterface
-from install_mpm.interface import InterfacePoints, facet_rule, frames, global_traction, reaction
+from install_mpm.interface import (
+    InterfacePoints,
+    StepAxes,
+    facet_rule,
+    frames,
+    global_traction,
+    reaction,
+    step_axes,
+)
 from install_mpm.kernels.interface_force import evaluate_interface
 from install_mpm.pile import PileMotion, rigid_displacement
 
@@ -49,8 +57,7 @@ def interface(request, facet_nodes, rng):
         covered=covered,
         area=np.tile(weights, N_ELEMENTS) * rng.uniform(0.5, 2.0, n),
         traction=traction,
-        mid_frame=frames(normal, 0.1),
-        end_frame=frames(normal, 0.2),
+        axes=StepAxes(frames(normal, 0.1), frames(normal, 0.1), frames(normal, 0.2)),
         pile_displacement=1e-4 * rng.normal(size=(n, 2)),
     )
 
@@ -62,8 +69,8 @@ def evaluate(interface, law, displacement):
     parameters = coulomb_interface.pack(law, np.zeros(len(traction)))
     evaluate_interface(
         interface.nodes, interface.shape_values, interface.area * interface.covered, parameters,
-        interface.traction, interface.mid_frame, interface.end_frame, interface.pile_displacement,
-        displacement, force, stiffness, traction,
+        interface.traction, interface.axes, interface.pile_displacement, displacement, force,
+        stiffness, traction,
     )  # fmt: skip
     return SimpleNamespace(force=force, stiffness=stiffness, traction=traction)
 
@@ -77,7 +84,7 @@ def slips(interface, displacement):
     if nodal.shape[1] > n_facet:
         own = np.einsum("qa,eai->eqi", interface.shape_values, nodal[:, n_facet:])
     slip = own - soil + interface.pile_displacement.reshape(soil.shape)
-    return np.einsum("eqij,eqj->eqi", interface.mid_frame.reshape(N_ELEMENTS, -1, 2, 2), slip)
+    return np.einsum("eqij,eqj->eqi", interface.axes.slip.reshape(N_ELEMENTS, -1, 2, 2), slip)
 
 
 @pytest.mark.parametrize("state", STATES)
@@ -96,7 +103,7 @@ def test_force_is_the_traction_on_both_sides(state, interface, rng):
         assert (status == {"stick": 0, "slip": 1}[state]).all()
     expected[interface.covered == 0.0] = 0.0
     np.testing.assert_allclose(result.traction, expected, atol=1e-10 * np.abs(expected).max())
-    on_pile = np.einsum("q,qki,qk->qi", interface.area, interface.end_frame, expected).reshape(
+    on_pile = np.einsum("q,qki,qk->qi", interface.area, interface.axes.traction, expected).reshape(
         N_ELEMENTS, N_POINTS, 2
     )
     share = np.einsum("qa,eqi->eai", interface.shape_values, on_pile)
@@ -146,6 +153,36 @@ def test_a_rotating_circle_has_no_gap_in_the_frame_of_the_middle_of_the_step(ang
     for other, sign in ((0.0, 1.0), (angle, -1.0)):
         false = np.einsum("pij,pj->pi", frames(normal, other), chord)[:, 1]
         np.testing.assert_allclose(false, sign * radius * (1.0 - np.cos(angle)), rtol=1e-6)
+
+
+def points_on_circle(direction, radius):
+    normal = -np.column_stack([np.cos(direction), np.sin(direction)])
+    n = len(normal)
+    return InterfacePoints(
+        -radius * normal, normal, np.ones(n), np.zeros((n, 2)), np.zeros((n, 5)),
+        np.zeros(n, dtype=np.int64), np.ones(n),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0, 1.4])
+def test_soil_that_slides_on_a_circle_meets_no_gap_and_the_normal_where_it_is(share, rng):
+    """However far the soil turns with the pile; the gap changes by its motion along that normal."""
+    radius, angle = 0.7, 0.2
+    points = points_on_circle(rng.uniform(0.0, 2.0 * np.pi, 20), radius)
+    pile = rigid_displacement(PileMotion(np.zeros(2), angle), points.position)
+    soil = rigid_displacement(PileMotion(np.zeros(2), share * angle), points.position)
+    swept = np.ones(20, dtype=bool)
+
+    def gap(displacement):
+        axes = step_axes(points, swept, angle, displacement)
+        return np.einsum("pj,pj->p", axes.slip[:, 1], pile - displacement)
+
+    axes = step_axes(points, swept, angle, soil)
+    np.testing.assert_allclose(gap(soil), 0.0, atol=1e-15)
+    np.testing.assert_allclose(axes.traction[:, 1], -(points.position + soil) / radius)
+    change = 1e-6 * rng.normal(size=soil.shape)
+    expected = -np.einsum("pj,pj->p", axes.slip_change[:, 1], change)
+    np.testing.assert_allclose((gap(soil + change) - gap(soil - change)) / 2, expected, atol=1e-9)
 
 
 def test_frames_are_right_handed_rows_of_tangent_and_normal():

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from install_mpm.background_mesh import FACETS_OPPOSITE
 from install_mpm.kernels.locate import FOUND, PROJECTED, locate_points
 from install_mpm.mesh_generation import generate_background_mesh
 
@@ -14,8 +15,8 @@ def locate(mesh, position, cell=None):
     cell = np.zeros(n, dtype=np.int64) if cell is None else np.array(cell)
     coordinates, status = np.full((n, 2), np.nan), np.full(n, -1)
     locate_points(
-        mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours, position, cell, coordinates, status,
-        np.empty(3),
+        mesh.nodes, mesh.cell_nodes, mesh.cell_neighbours, np.array(FACETS_OPPOSITE[3]), position,
+        cell, coordinates, status,
     )  # fmt: skip
     barycentric = np.column_stack([1.0 - coordinates.sum(axis=1), coordinates])
     return cell, barycentric, status, position

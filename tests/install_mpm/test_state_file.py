@@ -42,7 +42,7 @@ def state(make_grid, clay_ground):
     """A state of two steps, made by hand."""
     mesh = make_grid(2, 2)
     n = 4
-    history = append(empty_history(), history_row([1e-3], convergence_order=np.nan))
+    history = append(empty_history(History), history_row([1e-3], convergence_order=np.nan))
     history = append(history, history_row([1.0, 0.1, 1e-9], penetration=0.02))
     interface = InterfacePoints(
         position=np.zeros((n, 2)),
@@ -348,7 +348,7 @@ def test_history_row_must_be_complete(state):
 
 def test_empty_history_fits_its_description(tmp_path):
     with h5py.File(tmp_path / "history.h5", "w") as file:
-        write_record(file.create_group("history"), empty_history())
+        write_record(file.create_group("history"), empty_history(History))
         result = read_record(file["history"], History)
     assert all(len(array) == 0 for array in result)
 

@@ -1,4 +1,4 @@
-"""Stage 1: jack the pile into the ground.
+"""Stage 1: jack or screw the pile into the ground.
 
     python -m workflows.stages.install CASE -o DIR
 
@@ -12,17 +12,19 @@ from pathlib import Path
 import numpy as np
 
 from install_mpm.history import History
-from install_mpm.installation import InstallationProgress, install
+from install_mpm.installation import InstallationProgress, Observer, install
+from install_mpm.screw_installation import install_screw_pile
 from install_mpm.state_file import InstalledState, write_installed_state
-from workflows.case import Case, case_text
+from workflows.case import AnyCase, Case, case_text
 from workflows.directory import CHECKPOINT, INSTALLED
 from workflows.manifest import created_by
 from workflows.progress import Advance, no_progress
 from workflows.report_units import FORCE_UNIT
+from workflows.screw_case import ScrewCase
 from workflows.state_files import read_checked
 
 
-def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str]:
+def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[str]:
     """Install the pile of ``case``; return remarks for the user.
 
     The installation continues from the checkpoint in ``directory`` if there is one.
@@ -34,19 +36,38 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     NotConvergedError
         If a step does not converge; nothing is written but the last checkpoint.
     """
-    checkpoint = directory / CHECKPOINT
-    start, unit = _read_checkpoint(directory, case), FORCE_UNIT[case.kinematics]
+    checkpoint, unit = directory / CHECKPOINT, FORCE_UNIT[case.kinematics]
 
     def observe(state: InstalledState, progress: InstallationProgress) -> None:
         advance(
-            round(1e6 * progress.penetration),
+            round(1e6 * progress.travel),
             round(1e6 * progress.target),
             f"{progress.penetration:.2f} m, {progress.crowd_force / 1e3:.0f} {unit}",
         )
         if progress.load_step > 0 and progress.load_step % case.numerics.checkpoint_every == 0:
             write_installed_state(checkpoint, state, created_by())
 
-    installed = install(
+    start = _read_checkpoint(directory, case)
+    if isinstance(case, ScrewCase):
+        installed = _screw_in(case, start, observe)
+    else:
+        installed = _jack_in(case, start, observe)
+    write_installed_state(directory / INSTALLED, installed, created_by())
+    checkpoint.unlink(missing_ok=True)
+    force = float(installed.history.crowd_force[-1])
+    return [
+        f"pile tip at {float(installed.pile.tip_depth):g} m, "
+        f"crowd force {force / 1e3:.1f} {unit} after {len(installed.history.penetration)} steps",
+        *(
+            _torque(installed)
+            if isinstance(case, ScrewCase)
+            else _renewals(installed.history, unit)
+        ),
+    ]
+
+
+def _jack_in(case: Case, start: InstalledState | None, observe: Observer) -> InstalledState:
+    return install(
         case.ground,
         case.pile,
         case.interface,
@@ -60,14 +81,28 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         resume_from=start,
         observe=observe,
     )
-    write_installed_state(directory / INSTALLED, installed, created_by())
-    checkpoint.unlink(missing_ok=True)
-    force = float(installed.history.crowd_force[-1])
-    return [
-        f"pile tip at {float(installed.pile.tip_depth):g} m, "
-        f"crowd force {force / 1e3:.1f} {unit} after {len(installed.history.penetration)} steps",
-        *_renewals(installed.history, unit),
-    ]
+
+
+def _screw_in(case: ScrewCase, start: InstalledState | None, observe: Observer) -> InstalledState:
+    return install_screw_pile(
+        case.ground,
+        case.pile,
+        case.interface,
+        case.box,
+        case.background_mesh,
+        case.installation,
+        case.numerics,
+        case_text(case),
+        resume_from=start,
+        observe=observe,
+    )
+
+
+def _torque(installed: InstalledState) -> list[str]:
+    """Return rotation and torque at the end, in one line."""
+    turns = abs(float(installed.pile.rotation)) / (2.0 * np.pi)
+    torque = float(installed.history.torque[-1])
+    return [f"rotation {turns:.3g} turns, torque {torque / 1e3:.2f} kN m"]
 
 
 def _renewals(history: History, unit: str) -> list[str]:
@@ -82,7 +117,7 @@ def _renewals(history: History, unit: str) -> list[str]:
     ]
 
 
-def _read_checkpoint(directory: Path, case: Case) -> InstalledState | None:
+def _read_checkpoint(directory: Path, case: AnyCase) -> InstalledState | None:
     if not (directory / CHECKPOINT).exists():
         return None
     state: InstalledState = read_checked(directory, CHECKPOINT, case)

@@ -1,0 +1,98 @@
+"""History of the installation of a screw pile: one row per load step."""
+
+from __future__ import annotations
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+
+from install_mpm.record import Field
+
+
+def _per_step(unit: str, doc: str, dtype: str = "float64", *, may_be_nan: bool = False) -> Field:
+    return Field(("load_step",), unit, doc, dtype, may_be_nan)
+
+
+def _per_part(unit: str, doc: str) -> Field:
+    return Field(("load_step", "part"), unit, doc)
+
+
+class ScrewHistory(NamedTuple):
+    """What happened in each accepted load step."""
+
+    travel: Annotated[np.ndarray, _per_step("m", "travel of the rim at the end of the step")]
+    penetration: Annotated[np.ndarray, _per_step("m", "pile penetration at the end of the step")]
+    rotation: Annotated[np.ndarray, _per_step("rad", "pile rotation, right-handed about +z")]
+    crowd_force: Annotated[
+        np.ndarray,
+        _per_step("N", "force that the rig applies downward: soil reaction less pile weight"),
+    ]
+    torque: Annotated[
+        np.ndarray,
+        _per_step("N m", "torque that the rig applies, positive in the sense that drives it down"),
+    ]
+    lateral_force: Annotated[
+        np.ndarray,
+        Field(("load_step", 2), "N", "horizontal force of the soil on the pile, x and y"),
+    ]
+    overturning_moment: Annotated[
+        np.ndarray,
+        Field(("load_step", 2), "N m", "moment of the soil on the pile about the x and y axis"),
+    ]
+    part_torque: Annotated[np.ndarray, _per_part("N m", "torque of the parts of the surface")]
+    part_normal_torque: Annotated[
+        np.ndarray, _per_part("N m", "share of it that comes from normal traction")
+    ]
+    part_force: Annotated[
+        np.ndarray, _per_part("N", "upward force of the soil on the parts of the surface")
+    ]
+    far_force_mismatch: Annotated[
+        np.ndarray,
+        _per_step("", "force on the pile less supports and weight, over the largest of them"),
+    ]
+    far_torque_mismatch: Annotated[
+        np.ndarray,
+        _per_step("", "torque on the pile less that of the supports, over the larger"),
+    ]
+    rig_work: Annotated[np.ndarray, _per_step("J", "work of torque and vertical force in the step")]
+    interface_work: Annotated[
+        np.ndarray, _per_step("J", "work of the interface tractions on the slip in the step")
+    ]
+    soil_work: Annotated[np.ndarray, _per_step("J", "work of the stresses in the soil in the step")]
+    weight_work: Annotated[np.ndarray, _per_step("J", "work of the weight of the soil in the step")]
+    iterations: Annotated[np.ndarray, _per_step("", "Newton iterations", "int64")]
+    residual: Annotated[np.ndarray, _per_step("", "relative out-of-balance force at acceptance")]
+    convergence_order: Annotated[
+        np.ndarray,
+        _per_step("", "order of the last Newton iterations; NaN if too few", may_be_nan=True),
+    ]
+    cuts: Annotated[
+        np.ndarray, _per_step("", "times the step was halved before it converged", "int64")
+    ]
+    empty_cells: Annotated[
+        np.ndarray, _per_step("", "cells below the fill threshold beside filled ones", "int64")
+    ]
+    partly_filled_cells: Annotated[
+        np.ndarray, _per_step("", "cells with points that are not interior", "int64")
+    ]
+    empty_integration_points: Annotated[
+        np.ndarray, _per_step("", "integration points without a material point", "int64")
+    ]
+    injected_points: Annotated[
+        np.ndarray, _per_step("", "material points made by splitting", "int64")
+    ]
+    merged_points: Annotated[
+        np.ndarray, _per_step("", "material points that were merged into others", "int64")
+    ]
+    projected_points: Annotated[
+        np.ndarray, _per_step("", "material points brought back from outside the mesh", "int64")
+    ]
+    smallest_cell_quality: Annotated[
+        np.ndarray, _per_step("", "worst ratio 3 r_in / r_out of a cell, 1 is regular")
+    ]
+    smallest_volume_ratio: Annotated[np.ndarray, _per_step("", "smallest J of a material point")]
+    largest_volume_ratio: Annotated[np.ndarray, _per_step("", "largest J of a material point")]
+    residual_history: Annotated[
+        np.ndarray,
+        Field(("load_step", "iteration"), "", "relative residuals, NaN-padded", may_be_nan=True),
+    ]

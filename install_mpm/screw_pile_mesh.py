@@ -1,0 +1,161 @@
+"""Background mesh around a screw pile: quadratic tetrahedra that conform to its surface, by gmsh.
+
+The outer wall is a regular prism, so that the mesh fills the same space after it was turned back by
+a whole number of its sides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import gmsh
+import numpy as np
+
+from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
+from install_mpm.options import Box, ScrewMeshOptions
+from install_mpm.screw_pile import Helix, ScrewPile, thickness_at
+
+WALL_SIDES = 24
+"""Sides of the outer wall: the mesh fits into it again after a turn of 15 degrees."""
+
+SECTIONS_PER_TURN = 16
+"""Radial sections that a plate is lofted through in a turn."""
+
+INSIDE_SHARE = 0.6
+"""Of the shaft radius: where the sections of a plate begin, inside the shaft."""
+
+GROWTH = 0.45
+"""Increase of the cell size per distance from the pile."""
+
+GMSH_TETRAHEDRON_10 = 11
+
+
+def generate_screw_mesh(pile: ScrewPile, box: Box, options: ScrewMeshOptions) -> BackgroundMesh:
+    """Return a mesh of 10-node tetrahedra conforming to the pile and to the level ground surface.
+
+    It covers the ground within ``box.width`` of the axis (to the corners of the wall) and the
+    headroom above it.
+    """
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("General.NumThreads", 1)  # more threads: another mesh in every run
+        gmsh.option.setNumber("Mesh.RandomSeed", options.random_seed + 1)
+        gmsh.model.add("background")
+        _draw(pile, box)
+        _set_sizes(pile, box, options)
+        gmsh.model.mesh.generate(3)
+        gmsh.model.mesh.optimize("")
+        gmsh.model.mesh.setOrder(2)
+        return _collect()
+    finally:
+        gmsh.finalize()
+
+
+def _draw(pile: ScrewPile, box: Box) -> None:
+    """Draw soil and headroom as two volumes that share the ground surface, the pile cut out."""
+    occ = gmsh.model.occ
+    soil = _prism(box.width, -box.depth, box.depth)
+    air = _prism(box.width, 0.0, box.headroom)
+    body = _draw_pile(pile, top=box.headroom + pile.shaft_radius)
+    remaining, _ = occ.cut([(3, soil), (3, air)], body)
+    occ.fragment(remaining[:1], remaining[1:])
+    occ.synchronize()
+
+
+def _prism(radius: float, bottom: float, height: float) -> int:
+    """Return the volume of a regular prism around the axis."""
+    occ = gmsh.model.occ
+    angle = 2.0 * np.pi * np.arange(WALL_SIDES) / WALL_SIDES
+    points = [occ.addPoint(radius * np.cos(a), radius * np.sin(a), bottom) for a in angle]
+    lines = [occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
+    surface = occ.addPlaneSurface([occ.addCurveLoop(lines)])
+    return next(tag for dim, tag in occ.extrude([(2, surface)], 0.0, 0.0, height) if dim == 3)
+
+
+def _draw_pile(pile: ScrewPile, top: float) -> list[tuple[int, int]]:
+    """Return the volume of shaft, tip and plates, from the tip up to the level ``top`` in m."""
+    occ = gmsh.model.occ
+    tip, a = -pile.embedment, pile.shaft_radius
+    bottom = tip + pile.tip_length
+    shaft = [(3, occ.addCylinder(0.0, 0.0, bottom, 0.0, 0.0, top - bottom, a))]
+    tools = [_draw_plate(pile, helix) for helix in pile.helices]
+    if pile.tip_length > 0.0:
+        tools.append((3, occ.addCone(0.0, 0.0, tip, 0.0, 0.0, pile.tip_length, 0.0, a)))
+    if not tools:
+        return shaft
+    body, _ = occ.fuse(shaft, tools)
+    return list(body)
+
+
+def _draw_plate(pile: ScrewPile, helix: Helix) -> tuple[int, int]:
+    """Return the volume of a plate, lofted through radial rectangles."""
+    occ = gmsh.model.occ
+    n_sections = int(np.ceil(SECTIONS_PER_TURN * helix.turns)) + 1
+    windings = np.linspace(0.0, helix.winding, n_sections)
+    wires = []
+    for winding, thickness in zip(windings, thickness_at(helix, windings), strict=True):
+        level = pile.leading_level(helix) + helix.pitch * winding / (2.0 * np.pi)
+        polar = pile.sense * winding
+        corners = [
+            occ.addPoint(r * np.cos(polar), r * np.sin(polar), level + side * thickness / 2.0)
+            for r, side in (
+                (INSIDE_SHARE * pile.shaft_radius, -1.0),
+                (helix.radius, -1.0),
+                (helix.radius, 1.0),
+                (INSIDE_SHARE * pile.shaft_radius, 1.0),
+            )
+        ]
+        lines = [occ.addLine(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)]
+        wires.append(occ.addWire(lines))
+    volumes = occ.addThruSections(wires, makeSolid=True, makeRuled=False)
+    return next((dim, tag) for dim, tag in volumes if dim == 3)
+
+
+def _set_sizes(pile: ScrewPile, box: Box, options: ScrewMeshOptions) -> None:
+    """Grade the cell size from edges, plates and shaft to the far field."""
+    size_at = cell_size(pile, options)
+    gmsh.model.mesh.setSizeCallback(lambda dim, tag, x, y, z, *rest: size_at(x, y, z))
+    for option in ("FromPoints", "FromCurvature", "ExtendFromBoundary"):
+        gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", options.size_far)
+
+
+def cell_size(pile: ScrewPile, options: ScrewMeshOptions) -> Callable[[float, float, float], float]:
+    """Return the wanted cell size in m as a function of the place: it grows away from the pile."""
+    sense, a, tip = pile.sense, pile.shaft_radius, -pile.embedment
+
+    def size_at(x: float, y: float, z: float) -> float:
+        radius = float(np.hypot(x, y))
+        outside = max(radius - a, tip - z, 0.0)
+        size = options.size_at_shaft + GROWTH * outside
+        for helix in pile.helices:
+            leading = pile.leading_level(helix)
+            height = helix.pitch * helix.turns
+            off_radius = max(radius - helix.radius, 0.0)
+            off_level = max(leading - z, z - leading - height, 0.0)
+            from_plate = float(np.hypot(off_radius, off_level))
+            size = min(size, options.size_at_plate + GROWTH * from_plate)
+            for winding in (0.0, helix.winding):
+                polar = sense * winding
+                along = x * np.cos(polar) + y * np.sin(polar)
+                across = y * np.cos(polar) - x * np.sin(polar)
+                beside = max(a - along, along - helix.radius, 0.0)
+                rise = z - leading - helix.pitch * winding / (2.0 * np.pi)
+                from_edge = float(np.sqrt(beside**2 + across**2 + rise**2))
+                beyond = max(from_edge - options.edge_reach, 0.0)
+                size = min(size, options.size_at_edges + GROWTH * beyond)
+        return float(min(size, options.size_far))
+
+    return size_at
+
+
+def _collect() -> BackgroundMesh:
+    """Return the mesh that gmsh holds, with nodes numbered as used."""
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    _, cells = gmsh.model.mesh.getElementsByType(GMSH_TETRAHEDRON_10)
+    used, cell_nodes = np.unique(cells, return_inverse=True)
+    position = np.empty(int(tags.max()) + 1, dtype=np.int64)
+    position[tags] = np.arange(len(tags))
+    nodes = coordinates.reshape(-1, 3)[position[used]]
+    return make_background_mesh(nodes, cell_nodes.reshape(-1, 10))

@@ -1,0 +1,132 @@
+"""What a load step of a screw pile installation leaves in the history: resultants and work."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from install_mpm.background_mesh import cell_quality
+from install_mpm.equilibrium import StepEquilibrium
+from install_mpm.newton import convergence_order
+from install_mpm.pile import PileMotion, rigid_displacement
+from install_mpm.screw_pile import Helix, ScrewPile, part_names
+from install_mpm.screw_programme import Pose
+from install_mpm.screw_setup import ScrewInstallation
+from install_mpm.state_file import InstalledState
+from install_mpm.step import StepResult
+
+
+class Work(NamedTuple):
+    """Terms of the power balance of a step in J, with the forces at its end.
+
+    The rig drives, interface and soil take up, the weight of the soil drives or resists; what is
+    left over is the error of the balance.
+    """
+
+    rig: float
+    interface: float
+    soil: float
+    weight: float
+
+
+def work_of_step(state: InstalledState, equilibrium: StepEquilibrium, motion: PileMotion) -> Work:
+    """Return the work of a step: forces at its end on the displacements of the step."""
+    contact, start = equilibrium.contact, state.interface.position
+    pile, soil = rigid_displacement(motion, start), contact.position - start
+    return Work(
+        rig=-float((contact.force * pile).sum()),
+        interface=-float((contact.force * (pile - soil)).sum()),
+        soil=float((equilibrium.internal_force * equilibrium.displacement).sum()),
+        weight=float((equilibrium.external_force * equilibrium.displacement).sum()),
+    )
+
+
+def history_row(
+    problem: ScrewInstallation,
+    state: InstalledState,
+    result: StepResult,
+    motion: PileMotion,
+    pose: Pose,
+    travel: float,
+) -> dict[str, object]:
+    """Return the history of an accepted step in which the pile made ``motion``."""
+    equilibrium, newton = result.equilibrium, result.equilibrium.newton
+    work = work_of_step(state, equilibrium, motion)
+    return {
+        "travel": travel,
+        "penetration": pose.advance,
+        "rotation": pose.rotation,
+        **_resultants(problem, equilibrium, pose),
+        **_far_field(state, equilibrium),
+        "rig_work": work.rig,
+        "interface_work": work.interface,
+        "soil_work": work.soil,
+        "weight_work": work.weight,
+        "iterations": len(newton.residuals) - 1,
+        "residual": newton.residuals[-1],
+        "convergence_order": convergence_order(newton.residuals),
+        "cuts": int(state.control.cuts),
+        "smallest_cell_quality": cell_quality(result.mesh).min(),
+        "smallest_volume_ratio": result.points.volume_ratio.min(),
+        "largest_volume_ratio": result.points.volume_ratio.max(),
+        "residual_history": newton.residuals,
+        **result.counts._asdict(),
+    }
+
+
+def _resultants(
+    problem: ScrewInstallation, equilibrium: StepEquilibrium, pose: Pose
+) -> dict[str, object]:
+    """Return the six resultants on the pile, torque and vertical force by part."""
+    pile, contact = problem.pile, equilibrium.contact
+    moment = np.cross(contact.position, contact.force)
+    normal_moment = np.cross(contact.position, contact.normal_force)
+    part = np.repeat(problem.part, len(problem.model.elements.weights))
+    n_parts = len(part_names(pile))
+
+    def by_part(values: np.ndarray) -> np.ndarray:
+        return np.bincount(part, values, n_parts)
+
+    force = contact.force.sum(axis=0)
+    # soil resists a right-handed pile, which turns by negative angles, with a positive moment
+    return {
+        "crowd_force": force[2] - weight_of(pile, pile.embedment + pose.advance),
+        "torque": pile.sense * moment[:, 2].sum(),
+        "lateral_force": force[:2],
+        "overturning_moment": moment[:, :2].sum(axis=0),
+        "part_torque": pile.sense * by_part(moment[:, 2]),
+        "part_normal_torque": pile.sense * by_part(normal_moment[:, 2]),
+        "part_force": by_part(contact.force[:, 2]),
+    }
+
+
+def _far_field(state: InstalledState, equilibrium: StepEquilibrium) -> dict[str, object]:
+    """Return how far the resultants on the pile are from what supports and weight say."""
+    contact, supports = equilibrium.contact, equilibrium.reaction
+    end = state.background_mesh.nodes + equilibrium.displacement
+    force = contact.force.sum(axis=0)
+    loads = (supports.sum(axis=0), equilibrium.external_force.sum(axis=0))
+    largest = max(map(np.linalg.norm, (force, *loads)))
+    torque = np.cross(contact.position, contact.force)[:, 2].sum()
+    far_torque = np.cross(end, supports)[:, 2].sum()
+    return {
+        "far_force_mismatch": np.linalg.norm(force - sum(loads)) / (largest or 1.0),
+        "far_torque_mismatch": abs(torque - far_torque)
+        / (max(abs(torque), abs(far_torque)) or 1.0),
+    }
+
+
+def weight_of(pile: ScrewPile, tip_depth: float) -> float:
+    """Return the weight in N of the pile below the surface."""
+    shaft = np.pi * pile.shaft_radius**2 * (tip_depth - 2.0 / 3.0 * pile.tip_length)
+    return float(pile.unit_weight * (shaft + sum(plate_volume(pile, h) for h in pile.helices)))
+
+
+def plate_volume(pile: ScrewPile, helix: Helix) -> float:
+    """Return the volume in m^3 of a plate outside the shaft."""
+    annulus = (helix.radius**2 - pile.shaft_radius**2) / 2.0
+    thinned = 0.0
+    if helix.edge_thickness is not None:
+        thinned = (helix.thickness - helix.edge_thickness) * helix.taper_angle
+    return float(annulus * (helix.thickness * helix.winding - thinned))

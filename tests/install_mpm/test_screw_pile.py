@@ -1,0 +1,287 @@
+"""The screw pile: surface, mesh, programme, and the first steps of an installation."""
+
+import numpy as np
+import pytest
+from scipy.integrate import trapezoid
+
+from install_mpm import screw_surface
+from install_mpm.background_mesh import cell_quality
+from install_mpm.constitutive.parameters import CoulombInterface, VonMises
+from install_mpm.conventions import rotation_matrix
+from install_mpm.ground import Ground
+from install_mpm.options import Box, Numerics, ScrewMeshOptions
+from install_mpm.screw_installation import install_screw_pile
+from install_mpm.screw_pile import (
+    Helix,
+    ScrewPile,
+    distance_to_parts,
+    part_names,
+    surface_normals,
+    thickness_at,
+)
+from install_mpm.screw_pile_mesh import generate_screw_mesh
+from install_mpm.screw_programme import (
+    Phase,
+    ProgrammeError,
+    ScrewProgramme,
+    next_corner,
+    phase_motion,
+    pose_at,
+    total_travel,
+)
+from install_mpm.screw_record import plate_volume, weight_of
+from install_mpm.screw_setup import mesh_zones, move_mesh, set_up
+from install_mpm.state_file import read_installed_state, write_installed_state
+
+HELIX = Helix(diameter=1.0, pitch=0.33, thickness=0.12, height=0.25)
+BOX = Box(width=2.75, depth=3.0, headroom=0.5)
+SIZES = ScrewMeshOptions(0.25, 0.45, 0.4, 1.2, 0.05, points_per_direction=1)
+STRENGTH, ADHESION = 10e3, 0.5
+
+
+def pile_of(hand="right", **changes):
+    return ScrewPile(0.5, 1.2, (HELIX,), 8e3, hand=hand, **changes)
+
+
+@pytest.fixture(scope="module", params=["right", "left"])
+def pile(request):
+    return pile_of(request.param)
+
+
+@pytest.fixture(scope="module")
+def right_pile():
+    return pile_of()
+
+
+@pytest.fixture(scope="module")
+def mesh(right_pile):
+    return generate_screw_mesh(right_pile, BOX, SIZES)
+
+
+def places_on(pile, part, n, rng):
+    """Random places on a part of the surface, from its parametric form."""
+    a, r = pile.shaft_radius, HELIX.radius
+    winding = rng.uniform(0.3, HELIX.winding - 0.3, n)
+    radius, height = rng.uniform(a, r, n), rng.uniform(-0.5, 0.5, n) * HELIX.thickness
+    if part == "tip":
+        winding, radius = rng.uniform(0, 2 * np.pi, n), rng.uniform(0.01, a, n)
+        level = np.full(n, -pile.embedment)
+    elif part == "shaft":
+        radius, level = np.full(n, a), rng.uniform(-0.4, 0.0, n)
+    else:
+        if part in ("leading edge", "trailing edge"):
+            winding = np.full(n, 0.0 if part == "leading edge" else HELIX.winding)
+        elif part == "rim":
+            radius = np.full(n, r)
+        else:
+            height = np.full(n, (0.5 if part == "upper face" else -0.5) * HELIX.thickness)
+        level = pile.leading_level(HELIX) + HELIX.pitch * winding / (2 * np.pi) + height
+    polar = pile.sense * winding
+    return np.column_stack([radius * np.cos(polar), radius * np.sin(polar), level])
+
+
+@pytest.mark.parametrize("part", ["tip", "shaft", "lower face", "upper face", "rim",
+                                  "leading edge", "trailing edge"])  # fmt: skip
+def test_places_on_a_part_belong_to_it_and_have_its_normal(pile, part, rng):
+    number = part_names(pile).index(part)
+    places = places_on(pile, part, 50, rng)
+    distance = distance_to_parts(pile, places)
+    np.testing.assert_allclose(distance[:, number], 0.0, atol=1e-12)
+    normals = surface_normals(pile, np.full(50, number), places)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1.0)
+    step = 1e-4
+    inward = distance_to_parts(pile, places + step * normals)[:, number]
+    outward = distance_to_parts(pile, places - step * normals)[:, number]
+    np.testing.assert_allclose(inward, outward, rtol=2e-2)  # both sides are as far from it
+    sideways = np.cross(normals, rng.normal(size=(50, 3)))
+    along = distance_to_parts(pile, places + step * sideways)[:, number]
+    assert (along < 5e-3 * step).all()
+
+
+def test_soil_is_outside(pile, rng):
+    """A small way against the normal leads away from the axis, below, above or beside the plate."""
+    for part, direction in (("lower face", -1.0), ("upper face", 1.0)):
+        places = places_on(pile, part, 20, rng)
+        normals = surface_normals(pile, np.full(20, part_names(pile).index(part)), places)
+        assert (-normals[:, 2] * direction > 0.9).all()
+    edge = places_on(pile, "leading edge", 20, rng)
+    ahead = -surface_normals(pile, np.full(20, part_names(pile).index("leading edge")), edge)
+    turn = np.cross([0.0, 0.0, -pile.sense], edge)  # the pile is screwed in: the edge goes ahead
+    assert ((ahead * turn).sum(axis=1) > 0.0).all()
+
+
+def test_mesh_conforms_to_every_part(mesh, right_pile):
+    elements, part, normals = screw_surface.pile_elements(mesh, right_pile)
+    names = part_names(right_pile)
+    _, area, facet_normal = screw_surface.place_points(elements, mesh)
+    of_part = np.bincount(np.repeat(part, 3), area, len(names))
+    a, r, t = right_pile.shaft_radius, HELIX.radius, HELIX.thickness
+    face = np.pi * (r**2 - a**2)  # a little more, because it climbs
+    for name, exact in (("tip", np.pi * a**2), ("lower face", face), ("upper face", face),
+                        ("rim", 2 * np.pi * r * t), ("leading edge", (r - a) * t),
+                        ("trailing edge", (r - a) * t)):  # fmt: skip
+        assert of_part[names.index(name)] == pytest.approx(exact, rel=0.18)
+    assert (np.einsum("pi,pi->p", normals, facet_normal) > 0.6).all()
+    soil_and_air = np.pi * BOX.width**2 * (BOX.depth + BOX.headroom)
+    inside = weight_of(right_pile, right_pile.embedment + BOX.headroom) / right_pile.unit_weight
+    assert volume_of(mesh).sum() == pytest.approx(soil_and_air - inside, rel=0.02)
+    assert cell_quality(mesh).min() > 0.05
+
+
+def volume_of(mesh):
+    corners = mesh.nodes[mesh.cell_nodes[:, :4]]
+    return np.linalg.det(corners[:, 1:] - corners[:, :1]) / 6.0
+
+
+def test_mesh_follows_the_pile_and_is_wound_back(mesh, right_pile):
+    programme = ScrewProgramme((Phase("in", 1.0, 1.0),), 0.02)
+    problem = problem_of(mesh, right_pile, programme)
+    vertices = np.unique(problem.model.elements.nodes[:, :3])
+    on_plate = vertices[np.linalg.norm(mesh.nodes[vertices, :2], axis=1) > 0.3]
+    for share in (0.05, 0.3, 1.0):
+        pose = pose_at(right_pile, programme, share * total_travel(right_pile, programme))
+        moved = move_mesh(problem, mesh, pose)
+        turn = rotation_matrix(pose.rotation, 3)
+        expected = mesh.nodes @ turn.T - [0.0, 0.0, pose.advance]
+        np.testing.assert_allclose(moved.nodes[on_plate], expected[on_plate], atol=1e-12)
+        assert volume_of(moved).sum() == pytest.approx(volume_of(mesh).sum(), rel=2e-3)
+        assert cell_quality(moved).min() > 0.3 * cell_quality(mesh).min()
+        radius = np.linalg.norm(mesh.nodes[:, :2], axis=1)
+        far = radius > mesh_zones(right_pile, BOX).outer_radius
+        wound = np.radians(30.0) * np.round(pose.rotation / np.radians(30.0))
+        back = moved.nodes @ rotation_matrix(-wound, 3).T
+        np.testing.assert_allclose(back[far], mesh.nodes[far], atol=1e-12)
+
+
+def test_volume_of_a_tapered_plate():
+    tapered = Helix(1.0, 0.33, 0.12, 0.25, edge_thickness=0.04, taper_angle=1.0)
+    winding = np.linspace(0.0, tapered.winding, 200001)
+    mean = trapezoid(thickness_at(tapered, winding), winding)
+    assert plate_volume(pile_of(), tapered) == pytest.approx(
+        mean * (tapered.radius**2 - 0.25**2) / 2.0, rel=1e-6
+    )
+
+
+# --- programme ------------------------------------------------------------------------------------
+
+
+def test_a_right_handed_pile_is_screwed_in_by_negative_rotation():
+    motion = phase_motion(pile_of(), Phase("in", turns=2.0, advancement_ratio=0.5))
+    assert motion.rotation == pytest.approx(-4.0 * np.pi)
+    assert motion.advance == pytest.approx(0.33)
+    assert phase_motion(pile_of("left"), Phase("in", 2.0, 0.5)).rotation > 0.0
+
+
+def test_the_path_goes_through_the_ends_of_the_phases():
+    pile = pile_of()
+    programme = ScrewProgramme(
+        (Phase("in", 1.0, 1.0), Phase("push", advance=0.1), Phase("out", -0.5, 1.0)), 0.02
+    )
+    end = total_travel(pile, programme)
+    poses = [pose_at(pile, programme, travel) for travel in np.linspace(0.0, end, 400)]
+    assert max(pose.advance for pose in poses) == pytest.approx(0.43, abs=2e-3)
+    assert poses[-1].advance == pytest.approx(0.33 + 0.1 - 0.165)
+    assert poses[-1].rotation == pytest.approx(-np.pi)
+    first = next_corner(pile, programme, 0.0)
+    second = next_corner(pile, programme, first)
+    assert pose_at(pile, programme, first).advance == pytest.approx(0.33)
+    assert second - first == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("phase", "said"),
+    [
+        (Phase("in", 1.0, 1.0, advance=0.1), "both"),
+        (Phase("in", 1.0), "does not say how far"),
+        (Phase("rest", 0.0, advance=0.0), "does not move"),
+    ],
+)
+def test_phases_that_cannot_be_are_refused(phase, said):
+    with pytest.raises(ProgrammeError, match=said):
+        phase_motion(pile_of(), phase)
+
+
+# --- installation ---------------------------------------------------------------------------------
+
+
+def ground():
+    return Ground(soil=VonMises(200 * STRENGTH, 0.49, STRENGTH), unit_weight=8e3, k0=1.0)
+
+
+def law():
+    stiffness = 50 * 200 * STRENGTH
+    return CoulombInterface(stiffness, stiffness / 10, adhesion_factor=ADHESION)
+
+
+def problem_of(mesh, pile, programme):
+    return set_up(ground(), pile, law(), BOX, programme, Numerics(tolerance=1e-6), mesh)
+
+
+@pytest.fixture(scope="module")
+def installed(right_pile):
+    """States after every step of a few steps."""
+    states = []
+    install_screw_pile(
+        ground(), right_pile, law(), BOX, SIZES,
+        ScrewProgramme((Phase("in", 0.03, 1.0),), 0.03), Numerics(tolerance=1e-6), "title = 'x'",
+        observe=lambda state, progress: states.append(state),
+    )  # fmt: skip
+    return states
+
+
+def test_tangential_torque_of_every_part_is_that_of_full_adhesion(installed, right_pile, mesh):
+    """On the facets as they are: adhesion times area times radius, along the slip."""
+    history = installed[-1].history
+    elements, part, _ = screw_surface.pile_elements(mesh, right_pile)
+    position, area, _ = screw_surface.place_points(elements, mesh)
+    radius = np.linalg.norm(position[:, :2], axis=1)
+    is_buried = position[:, 2] < 0.0
+    whole = np.bincount(np.repeat(part, 3), area * radius * is_buried)
+    tangential = history.part_torque[-1] - history.part_normal_torque[-1]
+    names = part_names(right_pile)
+    for name in ("tip", "lower face", "upper face", "rim"):
+        number = names.index(name)
+        exact = ADHESION * STRENGTH * whole[number]
+        assert tangential[number] == pytest.approx(exact, rel=0.12)
+        assert tangential[number] < 1.001 * exact
+
+
+def test_pressure_on_shaft_and_tip_has_no_torque(installed, right_pile):
+    history, names = installed[-1].history, part_names(right_pile)
+    for name in ("tip", "shaft"):
+        normal = history.part_normal_torque[-1, names.index(name)]
+        assert abs(normal) < 1e-9 * abs(history.torque[-1])
+
+
+def test_resultants_on_the_pile_are_those_of_the_supports(installed):
+    history = installed[-1].history
+    assert (history.far_force_mismatch < 2e-6).all()
+    assert (history.far_torque_mismatch[1:] < 1e-3).all()
+
+
+def test_work_of_the_rig_is_taken_up_by_interface_and_soil(installed):
+    history = installed[-1].history
+    taken = history.interface_work + history.soil_work - history.weight_work
+    np.testing.assert_allclose(history.rig_work[1:], taken[1:], rtol=1e-3)
+    assert (history.interface_work[1:] > 0.0).all()
+
+
+def test_mass_is_conserved(installed):
+    masses = [state.material_points.mass.sum() for state in installed]
+    np.testing.assert_allclose(masses, masses[0], rtol=1e-12)
+
+
+def test_a_resumed_installation_is_bit_equal(installed, right_pile, tmp_path):
+    """From a file: every array of the last state is the same."""
+    write_installed_state(tmp_path / "state.h5", installed[1], "test")
+    resumed = install_screw_pile(
+        ground(), right_pile, law(), BOX, SIZES,
+        ScrewProgramme((Phase("in", 0.03, 1.0),), 0.03), Numerics(tolerance=1e-6), "title = 'x'",
+        resume_from=read_installed_state(tmp_path / "state.h5"),
+    )  # fmt: skip
+    for group in ("material_points", "background_mesh", "interface", "pile", "history", "control"):
+        for name, one, other in zip(
+            getattr(resumed, group)._fields, getattr(resumed, group),
+            getattr(installed[-1], group), strict=True,
+        ):  # fmt: skip
+            np.testing.assert_array_equal(one, other, err_msg=f"{group}/{name}")

@@ -1,0 +1,190 @@
+"""The case of a screw pile: one TOML file that describes ground, pile and installation in space."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.conventions import Kinematics
+from install_mpm.ground import GroundProfile
+from install_mpm.options import Box, Numerics, ScrewMeshOptions
+from install_mpm.screw_pile import Helix, ScrewPile
+from install_mpm.screw_pile_mesh import WALL_SIDES
+from install_mpm.screw_programme import (
+    ProgrammeError,
+    ScrewProgramme,
+    deepest_advance,
+    phase_motion,
+    rim_radius,
+)
+from workflows.cross_checks import check_ground, check_interface, check_solver
+from workflows.errors import CaseError
+
+LARGEST_ON_PLATE = 3.5
+"""Largest cell size on a plate over its thickness; coarser meshes fail or have flat cells."""
+
+LARGEST_ON_SHAFT = 2.0
+"""Largest cell size on the shaft over its radius."""
+
+LARGEST_AT_EDGES = 2.5
+"""Largest cell size at the edges over the thickness of the plate there."""
+
+LARGEST_STEP = 0.25
+"""Largest travel of the rim in a step over the size of the cells at the edges."""
+
+NARROWEST_BOX = 2.5
+"""Least radius of the box over the diameter of the largest plate."""
+
+
+@dataclass(frozen=True)
+class ScrewCase:
+    """Everything that an installation in space depends on."""
+
+    title: str
+    """What the results are called; a results directory belongs to one title."""
+    kinematics: Kinematics = field(default=Kinematics.THREE_D, kw_only=True)
+    ground: GroundProfile
+    pile: ScrewPile
+    interface: CoulombInterface
+    box: Box
+    background_mesh: ScrewMeshOptions
+    installation: ScrewProgramme
+    numerics: Numerics
+
+    @property
+    def final_tip_depth(self) -> float:
+        """Largest depth in m of the pile tip."""
+        return self.pile.embedment + deepest_advance(self.pile, self.installation)[1]
+
+
+def check_screw_case(case: ScrewCase) -> None:
+    """Check what single keys cannot tell, before anything is meshed.
+
+    Raises
+    ------
+    CaseError
+        Naming the keys, their values and the remedy, at the first contradiction.
+    """
+    if case.kinematics != Kinematics.THREE_D:
+        raise CaseError('kinematics of a screw pile is "three_d"; leave the key out')
+    _check_helices(case.pile)
+    _check_programme(case)
+    _check_box(case)
+    _check_sizes(case)
+    check_ground(case)
+    check_interface(case)
+    check_solver(case)
+
+
+def _check_helices(pile: ScrewPile) -> None:
+    top = 0.0
+    for number, helix in enumerate(sorted(pile.helices, key=lambda h: h.height), 1):
+        key = f"pile.helices[{number}]"
+        if helix.diameter <= pile.shaft_diameter:
+            raise CaseError(
+                f"{key}.diameter {helix.diameter:g} m is not larger than pile.shaft_diameter "
+                f"{pile.shaft_diameter:g} m; a plate has to stand out from the shaft"
+            )
+        if helix.pitch <= helix.thickness:
+            raise CaseError(
+                f"{key}.pitch {helix.pitch:g} m is not larger than its thickness "
+                f"{helix.thickness:g} m; the turns of the plate would run into each other"
+            )
+        if helix.edge_thickness is not None:
+            _check_taper(key, helix)
+        bottom = helix.height - helix.thickness / 2.0
+        if bottom < max(top, pile.tip_length):
+            where = "the conical tip" if top <= pile.tip_length else "the helix below"
+            raise CaseError(
+                f"{key}.height {helix.height:g} m puts its leading edge into {where} or below "
+                "the tip; raise it"
+            )
+        top = helix.height + helix.pitch * helix.turns + helix.thickness / 2.0
+    if top >= pile.embedment:
+        raise CaseError(
+            f"pile.embedment {pile.embedment:g} m leaves the top of the uppermost helix, "
+            f"{top:g} m above the tip, out of the ground; start deeper"
+        )
+
+
+def _check_taper(key: str, helix: Helix) -> None:
+    if helix.edge_thickness is not None and helix.edge_thickness > helix.thickness:
+        raise CaseError(
+            f"{key}.edge_thickness {helix.edge_thickness:g} m is more than the thickness "
+            f"{helix.thickness:g} m; an edge is as thick as the plate or thinner"
+        )
+    if 2.0 * helix.taper_angle > helix.winding:
+        raise CaseError(
+            f"{key}.taper_angle {np.degrees(helix.taper_angle):g} deg from both edges is more than "
+            f"the plate winds ({np.degrees(helix.winding):g} deg); make it smaller"
+        )
+
+
+def _check_programme(case: ScrewCase) -> None:
+    programme = case.installation
+    try:
+        for phase in programme.phases:
+            phase_motion(case.pile, phase)
+    except ProgrammeError as error:
+        raise CaseError(f"installation.phases: {error}") from error
+    if not programme.phases:
+        raise CaseError("installation.phases is empty; add an [[installation.phases]] table")
+    sides = programme.reset_angle / (2.0 * np.pi / WALL_SIDES)
+    if abs(sides - round(sides)) > 1e-9:
+        raise CaseError(
+            f"installation.reset_angle is {np.degrees(programme.reset_angle):g} deg, but the outer "
+            f"wall has sides of {360 / WALL_SIDES:g} deg; take a multiple of that"
+        )
+    highest = case.pile.embedment + deepest_advance(case.pile, programme)[0]
+    tops = [h.height + h.pitch * h.turns + h.thickness / 2.0 for h in case.pile.helices]
+    if highest <= max(tops, default=0.0):
+        raise CaseError(
+            "installation.phases pull the pile up until its uppermost helix leaves the ground; "
+            "pull less, or start deeper"
+        )
+
+
+def _check_box(case: ScrewCase) -> None:
+    rim, box = rim_radius(case.pile), case.box
+    if box.width < NARROWEST_BOX * 2.0 * rim:
+        raise CaseError(
+            f"box.width {box.width:g} m is less than {NARROWEST_BOX:g} diameters of the largest "
+            f"plate; make it at least {NARROWEST_BOX * 2.0 * rim:g} m"
+        )
+    deepest = case.final_tip_depth + 2.0 * rim
+    if deepest > box.depth:
+        raise CaseError(
+            f"installation.phases take the tip to {case.final_tip_depth:g} m, less than a diameter "
+            f"above the bottom of the box; make box.depth at least {deepest:g} m "
+            f"(it is {box.depth:g} m)"
+        )
+
+
+def _check_sizes(case: ScrewCase) -> None:
+    pile, mesh = case.pile, case.background_mesh
+    if mesh.size_at_shaft > LARGEST_ON_SHAFT * pile.shaft_radius:
+        raise CaseError(
+            f"background_mesh.size_at_shaft {mesh.size_at_shaft:g} m is too coarse for a shaft of "
+            f"{pile.shaft_diameter:g} m; take at most {LARGEST_ON_SHAFT * pile.shaft_radius:g} m"
+        )
+    smallest = mesh.size_at_edges
+    for helix in pile.helices:
+        edge = helix.edge_thickness or helix.thickness
+        for key, size, limit in (
+            ("size_at_plate", mesh.size_at_plate, LARGEST_ON_PLATE * helix.thickness),
+            ("size_at_edges", mesh.size_at_edges, LARGEST_AT_EDGES * edge),
+        ):
+            if size > limit:
+                raise CaseError(
+                    f"background_mesh.{key} {size:g} m cannot hold a plate {helix.thickness:g} m "
+                    f"thick ({edge:g} m at its edges); take at most {limit:g} m"
+                )
+        smallest = min(smallest, 2.0 * edge)
+    if case.installation.step > LARGEST_STEP * smallest:
+        raise CaseError(
+            f"installation.step {case.installation.step:g} m moves the edges more than "
+            f"{LARGEST_STEP:g} of a cell at once; take at most {LARGEST_STEP * smallest:g} m, "
+            "or coarser cells at the edges"
+        )
