@@ -13,9 +13,17 @@ from workflows import cli
 from workflows.errors import CaseError
 from workflows.verification import registry
 from workflows.verification.parameters import parameters_of, read_assignments
-from workflows.verification.problem import Check, Outcome, Problem, Series, at_least, relative
+from workflows.verification.problem import (
+    Check,
+    Outcome,
+    Problem,
+    Series,
+    at_least,
+    relative,
+    shown,
+)
 from workflows.verification.runner import newton_statement, run_problem
-from workflows.verification_numbers import number_text
+from workflows.verification_numbers import cells, number_text
 
 PROBLEMS = registry.problems()
 
@@ -278,6 +286,12 @@ def test_numbers_for_machines(with_area, monkeypatch, tmp_path):
     ]  # fmt: skip
     assert problem["inputs"]["kinematics"] == {"value": "plane_strain", "unit": None}
     assert problem["series"][0]["computed"] == [1e-2, 2.5e-3]
+
+
+def test_a_quantity_without_demand_is_shown_and_fails_nothing():
+    row = shown("width, m", 5.0, 4.0)
+    assert row.is_met
+    assert cells(row) == ("width, m", "5", "4", "+0.25", "none", "shown")
 
 
 def test_page_is_the_same_each_time_and_old_pictures_go(with_area, monkeypatch, tmp_path):

@@ -28,7 +28,7 @@ from install_mpm.discretisation import Scheme
 from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground
 from workflows.verification.body import Body, advance, make_body
-from workflows.verification.problem import Check, Outcome, Problem, Series, relative
+from workflows.verification.problem import Check, Outcome, Problem, Series, relative, shown
 from workflows.verification.rectangle import rectangle_mesh
 from workflows.verification.references.ample import BeamInput
 from workflows.verification.references.elastica import cantilever_tip
@@ -144,6 +144,8 @@ def cantilever(
         checks=(
             *_at_depth("d", -deep.tip[-1], beam[-1]),
             *_at_depth("d / 2", -slender.tip[-1], slender_beam[-1]),
+            *_beside_elastica("solid", -deep.tip[-1], elastica[-1]),
+            *_beside_elastica("exact beam", beam[-1], elastica[-1]),
             relative("u of the tip at depth 0, elastica [m]", -tip[-1, 0], elastica[-1, 0], 0.02),
             relative("w of the tip at depth 0, elastica [m]", -tip[-1, 1], elastica[-1, 1], 0.02),
             relative("support reaction [N]", deep.reaction[1], P, 1e-8),
@@ -163,7 +165,7 @@ def cantilever(
             )
             for axis, name in ((1, "deflection w"), (0, "shortening u"))
         ),
-        remarks=_against_elastica(-deep.tip[-1], beam[-1], elastica[-1]),
+        remarks=(_why_not_at_depth(beam[-1], elastica[-1]),),
         residual_histories=deep.histories + slender.histories,
     )
 
@@ -177,15 +179,21 @@ def _at_depth(depth: str, tip: np.ndarray, beam: np.ndarray) -> tuple[Check, Che
     return u, w
 
 
-def _against_elastica(solid: np.ndarray, beam: np.ndarray, elastica: np.ndarray) -> tuple[str, ...]:
-    """Return by how much solid and exact beam differ from the elastica, in words."""
-    in_words = [
-        f"{name} by {(tip / elastica - 1.0)[1]:+.2%} in w and {(tip / elastica - 1.0)[0]:+.2%} in u"
-        for name, tip in (("the solid", solid), ("the exact beam", beam))
-    ]
+def _beside_elastica(name: str, tip: np.ndarray, elastica: np.ndarray) -> tuple[Check, Check]:
+    """Return the rows of shortening and deflection at depth d, which are not demanded."""
+    u, w = (
+        shown(f"{symbol} of the tip at depth d, {name} beside the elastica [m]", *pair)
+        for symbol, *pair in zip("uw", tip, elastica, strict=True)
+    )
+    return u, w
+
+
+def _why_not_at_depth(beam: np.ndarray, elastica: np.ndarray) -> str:
+    """Return why the elastica is not demanded at the depth of the cantilever."""
+    deviation = beam[1] / elastica[1] - 1.0
     return (
-        f"at depth d the inextensible elastica is missed: {'; '.join(in_words)}. It neither"
-        " stretches nor shears, so no solid of this depth meets it; at depth 0 it is met",
+        "the elastica neither stretches nor shears, so no body of depth d meets it: the exact beam"
+        f" of that depth is {deviation:+.2%} from it in w; it is demanded at depth 0"
     )
 
 
