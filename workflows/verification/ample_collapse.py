@@ -44,6 +44,9 @@ NO_MERGING = 10**6
 """Points per cell: seeds stay who they are."""
 ELASTIC_STEP = 10
 """Of AMPLE, of 40; no point yields yet."""
+TRIANGULATION_DIGITS = 9
+"""Of places over the width: the seeds lie on circles in fours, and round-off would choose between
+two triangulations."""
 AGREEMENT = 1e-2
 ELASTIC_AGREEMENT = 1e-3
 
@@ -96,10 +99,11 @@ def _extent(data: CollapseInput, points: MaterialPoints, n_seeds: int) -> np.nda
     Injected points, which come after the ``n_seeds`` seeds, have no undeformed place of their own.
     """
     per_side = COLLAPSE.points_per_cell[0] * round(COLLAPSE.width / COLLAPSE.cell_size)
-    lines = (np.arange(per_side) + 0.5) / per_side * data.width
+    lines = (np.arange(per_side) + 0.5) / per_side
     places = np.stack(np.meshgrid(lines, lines), axis=-1).reshape(-1, 2)
     position, displacement = points.position[:n_seeds], points.displacement[:n_seeds]
-    moved = places + LinearNDInterpolator(position - displacement, displacement)(places)
+    undeformed = np.round((position - displacement) / data.width, TRIANGULATION_DIGITS)
+    moved = data.width * places + LinearNDInterpolator(undeformed, displacement)(places)
     extent: np.ndarray = np.nanmax(moved, axis=0)
     return extent
 
