@@ -22,6 +22,7 @@ from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffn
 from install_mpm.linear_solvers import Solve
 from install_mpm.newton import Evaluation, NewtonResult, solve_newton
 from install_mpm.pile import PileMotion, rigid_displacement
+from install_mpm.timing import measured
 
 PRESSURE_DEPENDENT = (Model.MODIFIED_CAM_CLAY, Model.CRITICAL_STATE_SAND)
 """Laws whose stiffness grows with the pressure."""
@@ -192,7 +193,8 @@ class _StepSystem:
     def evaluate(self, displacement: np.ndarray) -> Evaluation:
         """Return residual and tangent at the trial ``displacement`` (n_dofs,)."""
         nodal = displacement.reshape(self.external.shape)
-        self._evaluate_blocks(nodal)
+        with measured("kernels"):
+            self._evaluate_blocks(nodal)
         is_admissible = not self.trial.status.any()
         pattern = self.model.pattern
         internal, interface = np.zeros(nodal.size), np.zeros(nodal.size)
@@ -205,10 +207,11 @@ class _StepSystem:
             pattern.slots,
             strict=True,
         )
-        for force, stiffness, total, dofs, slots in families:
-            scatter_force(force.reshape(dofs.shape), dofs, total)
-            scatter_stiffness(stiffness.reshape(slots.shape), slots, values)
-        constrain(pattern.indptr, pattern.indices, self.is_free.ravel(), values)
+        with measured("assembly"):
+            for force, stiffness, total, dofs, slots in families:
+                scatter_force(force.reshape(dofs.shape), dofs, total)
+                scatter_stiffness(stiffness.reshape(slots.shape), slots, values)
+            constrain(pattern.indptr, pattern.indices, self.is_free.ravel(), values)
         self.internal = internal.reshape(nodal.shape)
         out_of_balance = internal + interface - self.external.ravel()
         self.out_of_balance = out_of_balance.reshape(nodal.shape)

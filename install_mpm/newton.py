@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm.linear_solvers import SingularMatrixError, Solve
+from install_mpm.timing import measured
 
 BACKTRACKS = 6
 """Halvings of a Newton step before the iteration goes on with the best trial found."""
@@ -69,7 +70,8 @@ def solve_newton(
         if residuals[-1] <= (tolerance if iteration else ROUND_OFF):
             return NewtonResult(x, True, np.array(residuals))
         try:
-            correction = solve(state.tangent, -state.residual)
+            with measured("linear solves"):
+                correction = solve(state.tangent, -state.residual)
         except SingularMatrixError:
             return NewtonResult(x, False, np.array(residuals))
         x, state = _backtrack(evaluate, x, correction, state)

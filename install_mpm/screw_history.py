@@ -23,6 +23,9 @@ class ScrewHistory(NamedTuple):
     travel: Annotated[np.ndarray, _per_step("m", "travel of the rim at the end of the step")]
     penetration: Annotated[np.ndarray, _per_step("m", "pile penetration at the end of the step")]
     rotation: Annotated[np.ndarray, _per_step("rad", "pile rotation, right-handed about +z")]
+    release_share: Annotated[
+        np.ndarray, _per_step("", "share of the rig's loads that has been taken off")
+    ]
     crowd_force: Annotated[
         np.ndarray,
         _per_step("N", "force that the rig applies downward: soil reaction less pile weight"),

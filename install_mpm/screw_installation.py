@@ -6,6 +6,8 @@ law of the mesh, and what is recorded.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from install_mpm import screw_surface
@@ -17,6 +19,7 @@ from install_mpm.history import append
 from install_mpm.installation import InstallationProgress, NotConvergedError, Observer
 from install_mpm.options import Box, Numerics, ScrewMeshOptions
 from install_mpm.pile import PileMotion
+from install_mpm.rig_release import RELEASE_STEPS, find_pose
 from install_mpm.screw_pile import ScrewPile
 from install_mpm.screw_pile_mesh import generate_screw_mesh
 from install_mpm.screw_programme import (
@@ -24,6 +27,7 @@ from install_mpm.screw_programme import (
     ScrewProgramme,
     next_corner,
     pose_at,
+    rim_radius,
     total_travel,
 )
 from install_mpm.screw_record import history_row
@@ -82,6 +86,37 @@ def install_screw_pile(
         state, accepted = advance_pile(problem, state, _next_step(problem, state))
         if accepted:
             observe(state, _progress(state, end))
+    if programme.release:
+        state = release_rig(problem, state, lambda moved: observe(moved, _progress(moved, end)))
+    return state
+
+
+def release_rig(
+    problem: ScrewInstallation, state: InstalledState, observe: Callable[[InstalledState], None]
+) -> InstalledState:
+    """Return the state after the rig has taken off its loads in equal shares.
+
+    Raises
+    ------
+    NotConvergedError
+        If the loads cannot be taken off.
+    """
+    history = state.history
+    done = round(float(history.release_share[-1]) * RELEASE_STEPS)
+    last = history.travel.size - 1 - done  # the last step before the release
+    loads = np.array([history.crowd_force[last], history.torque[last] / rim_radius(problem.pile)])
+    for n in range(done + 1, RELEASE_STEPS + 1):
+        share = n / RELEASE_STEPS
+        here = Pose(float(state.pile.penetration), float(state.pile.rotation))
+        pose, result = find_pose(
+            problem,
+            lambda tried, state=state: step_to(problem, state, tried, 0.0),  # type: ignore[misc]
+            here,
+            (1.0 - share) * loads,
+            float(np.linalg.norm(loads)),
+        )
+        state = accept(problem, state, result, pose, travelled(state), share)
+        observe(state)
     return state
 
 
@@ -123,27 +158,38 @@ def advance_pile(
     """
     end = travelled(state) + travel
     pose = pose_at(problem.pile, problem.programme, end)
-    before = Pose(float(state.pile.penetration), float(state.pile.rotation))
-    scale = travel / float(state.control.step)
-    motion = PileMotion(
-        np.array([0.0, 0.0, before.advance - pose.advance]), pose.rotation - before.rotation
-    )
-    result = step(
-        state.material_points,
-        state.background_mesh,
-        state.interface,
-        motion,
-        Prescribed(problem.supports, np.zeros_like(state.background_mesh.nodes)),
-        start=scale * state.control.displacement_per_step,
-        move_mesh=lambda mesh: move_mesh(problem, mesh, pose),
-        model=problem.model,
-        gradient=problem.gradient,
-    )
+    result = step_to(problem, state, pose, travel / float(state.control.step))
     if not result.is_converged:
         if int(state.control.cuts) >= problem.numerics.max_cuts:
             raise NotConvergedError(_why(state, pose, result))
         return state._replace(control=cut_control(state.control, travel)), False
-    return _accept(problem, state, result, motion, pose, travel), True
+    return accept(problem, state, result, pose, end), True
+
+
+def step_to(
+    problem: ScrewInstallation, state: InstalledState, pose: Pose, warm_start: float
+) -> StepResult:
+    """Return the step that takes the pile to ``pose``.
+
+    ``warm_start`` is the share of the last displacement that is tried first.
+    """
+    return step(
+        state.material_points,
+        state.background_mesh,
+        state.interface,
+        motion_to(state, pose),
+        Prescribed(problem.supports, np.zeros_like(state.background_mesh.nodes)),
+        start=warm_start * state.control.displacement_per_step,
+        move_mesh=lambda mesh: move_mesh(problem, mesh, pose),
+        model=problem.model,
+        gradient=problem.gradient,
+    )
+
+
+def motion_to(state: InstalledState, pose: Pose) -> PileMotion:
+    """Return the rigid motion from where the pile is to ``pose``."""
+    down = pose.advance - float(state.pile.penetration)
+    return PileMotion(np.array([0.0, 0.0, -down]), pose.rotation - float(state.pile.rotation))
 
 
 def _why(state: InstalledState, pose: Pose, result: StepResult) -> str:
@@ -157,21 +203,26 @@ def _why(state: InstalledState, pose: Pose, result: StepResult) -> str:
     )
 
 
-def _accept(
+def accept(
     problem: ScrewInstallation,
     state: InstalledState,
     result: StepResult,
-    motion: PileMotion,
     pose: Pose,
     travel: float,
+    release_share: float = 0.0,
 ) -> InstalledState:
-    """Return the state after a converged step, with its row of the history."""
+    """Return the state after a converged step, with its row of the history.
+
+    ``travel`` is that of the rim at its end in m.
+    """
+    motion = motion_to(state, pose)
     interface = screw_surface.follow(
         result.interface, problem.model.elements, problem.normals, pose.rotation, result.mesh,
         problem.ground, problem.law,
     )  # fmt: skip
     turn = rotation_matrix(motion.rotation, 3)
-    row = history_row(problem, state, result, motion, pose, travelled(state) + travel)
+    row = history_row(problem, state, result, motion, pose, travel)
+    row["release_share"] = release_share
     return InstalledState(
         material_points=result.points,
         background_mesh=result.mesh,
@@ -184,7 +235,10 @@ def _accept(
         ),
         history=append(state.history, row),
         control=accepted_control(
-            state.control, result.equilibrium.displacement @ turn.T, travel, problem.programme.step
+            state.control,
+            result.equilibrium.displacement @ turn.T,
+            travel - travelled(state),
+            problem.programme.step,
         ),
         case_text=state.case_text,
         kinematics=state.kinematics,

@@ -41,6 +41,8 @@ class ScrewProgramme:
     """Travel of the rim in a step; about a third of the cell size at the edges."""
     reset_angle: Annotated[float, Unit("rad"), Gt(0)] = float(np.radians(30.0))
     """Rotation after which the mesh is wound back; a whole number of sides of the outer wall."""
+    release: bool = True
+    """At the end the rig lets go: torque and crowd force go to zero."""
 
 
 class Pose(NamedTuple):

@@ -88,17 +88,25 @@ def _resultants(
     def by_part(values: np.ndarray) -> np.ndarray:
         return np.bincount(part, values, n_parts)
 
-    force = contact.force.sum(axis=0)
-    # soil resists a right-handed pile, which turns by negative angles, with a positive moment
+    crowd_force, torque = rig_loads(pile, equilibrium, pose)
     return {
-        "crowd_force": force[2] - weight_of(pile, pile.embedment + pose.advance),
-        "torque": pile.sense * moment[:, 2].sum(),
-        "lateral_force": force[:2],
+        "crowd_force": crowd_force,
+        "torque": torque,
+        "lateral_force": contact.force[:, :2].sum(axis=0),
         "overturning_moment": moment[:, :2].sum(axis=0),
         "part_torque": pile.sense * by_part(moment[:, 2]),
         "part_normal_torque": pile.sense * by_part(normal_moment[:, 2]),
         "part_force": by_part(contact.force[:, 2]),
     }
+
+
+def rig_loads(pile: ScrewPile, equilibrium: StepEquilibrium, pose: Pose) -> tuple[float, float]:
+    """Return crowd force in N and torque in N m that the rig applies at the end of a step."""
+    contact = equilibrium.contact
+    resistance = float(contact.force[:, 2].sum())
+    # soil resists a right-handed pile, which turns by negative angles, with a positive moment
+    moment = float(np.cross(contact.position, contact.force)[:, 2].sum())
+    return resistance - weight_of(pile, pile.embedment + pose.advance), pile.sense * moment
 
 
 def _far_field(state: InstalledState, equilibrium: StepEquilibrium) -> dict[str, object]:

@@ -22,6 +22,7 @@ from install_mpm.interface import InterfacePoints
 from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import PileMotion
+from install_mpm.timing import measured
 
 SCHEMES = {Scheme.CARRIERS: carriers, Scheme.QUADRATURE: quadrature}
 
@@ -69,7 +70,8 @@ def step(
     no undo.
     """
     scheme = SCHEMES[model.scheme]
-    given = scheme.give_state(points, mesh, model, gradient)
+    with measured("transfer"):
+        given = scheme.give_state(points, mesh, model, gradient)
     interface = switch_on(interface, given.fill, model)
 
     equilibrium = find_equilibrium(
@@ -79,11 +81,13 @@ def step(
     if not equilibrium.newton.is_converged:
         return StepResult(False, equilibrium, points, interface, mesh, counts)
 
-    carried, is_sound = scheme.take_state(
-        given.points, mesh, given.fill, equilibrium, model, gradient
-    )
+    with measured("transfer"):
+        carried, is_sound = scheme.take_state(
+            given.points, mesh, given.fill, equilibrium, model, gradient
+        )
     moved_mesh = move_mesh(mesh)
-    n_projected = locate(carried, moved_mesh) if is_sound else 0
+    with measured("location"):
+        n_projected = locate(carried, moved_mesh) if is_sound else 0
     return StepResult(
         is_sound,
         equilibrium,

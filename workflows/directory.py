@@ -12,6 +12,7 @@ from workflows.errors import CaseError, DirectoryError
 CASE = "case.toml"
 INSTALLED = "installed.h5"
 CHECKPOINT = "installed.checkpoint.h5"
+TIMING = "installation_times.json"
 HANDED_OFF = "handed_off.h5"
 CERTIFICATE = "certificate.json"
 SERVICE = "service.h5"

@@ -38,6 +38,8 @@ TOTAL_STRESS_CLAY = {
     "undrained_shear_strength_gradient": Typical(
         "1.5 kPa/m", "0.2 to 0.3 of the effective unit weight in soft clay (Mesri 1975: 0.22)"
     ),
+    "sensitivity": Typical(3.0, "2 to 4 in most clays, above 8 sensitive (Skempton 1952)"),
+    "remoulding_strain": Typical(20.0, "10 to 50 (Einav and Randolph 2005)"),
 }
 FRICTIONAL = {
     "youngs_modulus": Typical("40 MPa", f"10 to 30 MPa loose, 40 to 80 MPa dense ({LAMBE})"),

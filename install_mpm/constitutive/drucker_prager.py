@@ -88,7 +88,7 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
     state[:] = state_old
     frictional.update_state(trial_strain, strain, strain, False, parameters, state_old, state)
     excess = yield_function(stress, parameters, state)
-    if excess <= 0.0:
+    if excess <= frictional.ROUND_OFF * parameters[SHEAR]:
         return 0
     if not np.isfinite(excess):
         return NOT_FINITE

@@ -34,6 +34,13 @@ void ratio, 1 / (e_c - e_0); zero if dilation never ends."""
 N_PARAMETERS = 4
 """Number of packed parameters that all frictional laws share."""
 
+ROUND_OFF = 1e-13
+"""Excess of the yield function over the shear modulus that counts as none.
+
+Soil that has yielded and rests is on its yield surface but for round-off.  Without this bound the
+tangent at the start of a step would be elastic or plastic by chance, from point to point.
+"""
+
 APEX_STIFFNESS = 1e-7
 """Share of the elastic tangent at the apex, where the law itself has no stiffness.
 

@@ -138,7 +138,7 @@ def _return_principal(trial, left, slope, parameters, stress, tangent):
         for b in range(3):
             tangent[a, b] = lame + (2.0 * shear if a == b else 0.0)
     excess = _yield_value(stress[0], stress[2], parameters)
-    if excess <= 0.0:
+    if excess <= frictional.ROUND_OFF * shear:
         return ELASTIC
     if not np.isfinite(excess):
         return NOWHERE

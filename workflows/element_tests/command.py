@@ -26,6 +26,8 @@ from workflows.soil_template import soil_example
 from workflows.soil_typical import TYPICAL
 
 VERTICAL = 1
+LARGEST_SHEAR = 100.0
+"""Shear strain up to which remoulding can be followed; axial strains end at 1."""
 DEPTH_OF_SAMPLE = 5.0
 """Depth in m of the sample of a layer that has no lower end, or its middle if that is higher."""
 
@@ -52,8 +54,9 @@ def run(
     for name in names:
         if name not in TESTS:
             raise CaseError(f"--test {name}: no such test; {suggestion(name, TESTS)}")
-    if strain is not None and not 0.0 < strain < 1.0:
-        raise CaseError(f"--strain {strain:g} must be > 0 and < 1")
+    most = LARGEST_SHEAR if all(TESTS[name].is_shear for name in names or TESTS) else 1.0
+    if strain is not None and not 0.0 < strain < most:
+        raise CaseError(f"--strain {strain:g} must be > 0 and < {most:g} in these tests")
     results = {
         name: [_tested(stratum, name, sample, strain) for sample in samples]
         for name in names or TESTS

@@ -7,6 +7,7 @@ Reads the case; writes ``installed.h5`` and, while it runs, ``installed.checkpoi
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +16,9 @@ from install_mpm.history import History
 from install_mpm.installation import InstallationProgress, Observer, install
 from install_mpm.screw_installation import install_screw_pile
 from install_mpm.state_file import InstalledState, write_installed_state
+from install_mpm.timing import measured_seconds, start_measuring
 from workflows.case import AnyCase, Case, case_text
-from workflows.directory import CHECKPOINT, INSTALLED
+from workflows.directory import CHECKPOINT, INSTALLED, TIMING, write_text
 from workflows.manifest import created_by
 from workflows.progress import Advance, no_progress
 from workflows.report_units import FORCE_UNIT
@@ -48,6 +50,7 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
             write_installed_state(checkpoint, state, created_by())
 
     start = _read_checkpoint(directory, case)
+    start_measuring()
     if isinstance(case, ScrewCase):
         installed = _screw_in(case, start, observe)
     else:
@@ -58,6 +61,7 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     return [
         f"pile tip at {float(installed.pile.tip_depth):g} m, "
         f"crowd force {force / 1e3:.1f} {unit} after {len(installed.history.penetration)} steps",
+        _times(directory),
         *(
             _torque(installed)
             if isinstance(case, ScrewCase)
@@ -96,6 +100,16 @@ def _screw_in(case: ScrewCase, start: InstalledState | None, observe: Observer) 
         resume_from=start,
         observe=observe,
     )
+
+
+def _times(directory: Path) -> str:
+    """Write where the time went; return it in one line."""
+    seconds = measured_seconds()
+    rounded = {phase: round(value, 3) for phase, value in seconds.items()}
+    write_text(directory / TIMING, json.dumps(rounded, indent=2) + "\n")
+    total = sum(seconds.values()) or 1.0
+    shares = ", ".join(f"{phase} {100 * value / total:.0f} %" for phase, value in seconds.items())
+    return f"time: {shares} of {total:.0f} s"
 
 
 def _torque(installed: InstalledState) -> list[str]:

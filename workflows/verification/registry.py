@@ -33,6 +33,7 @@ MODULES: tuple[str, ...] = (
     "interface_shear",
     "paper_penetration",
     "rigid_disc",
+    "sand_cavity",
     "scheme_comparison",
     "shaft_friction",
     "sliding_block",
