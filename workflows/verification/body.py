@@ -15,7 +15,7 @@ from install_mpm.assembly import sparsity_pattern
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
-from install_mpm.conventions import Kinematics
+from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme
 from install_mpm.equilibrium import Prescribed
 from install_mpm.geostatic import geostatic_gradient
@@ -59,6 +59,7 @@ def make_body(
     per_direction: int = 2,
     is_soil: np.ndarray | None = None,
     interface: tuple[InterfaceElements, InterfacePoints] | None = None,
+    gravity: float = GRAVITY,
 ) -> Body:
     """Return a body of ``ground`` in the cells ``is_soil`` (n_cells,) of ``mesh`` (default z < 0).
 
@@ -79,9 +80,18 @@ def make_body(
         has_mean_dilatation=scheme == Scheme.CARRIERS,
         scheme=scheme,
         is_cell_weighted=is_cell_weighted,
+        gravity=gravity,
     )
     return Body(
-        seed_points(mesh, cell, ground, per_direction, kinematics=kinematics, is_soil=is_soil),
+        seed_points(
+            mesh,
+            cell,
+            ground,
+            per_direction,
+            kinematics=kinematics,
+            is_soil=is_soil,
+            gravity=gravity,
+        ),
         mesh,
         points,
         np.zeros_like(mesh.nodes),

@@ -18,6 +18,7 @@ MODULES: tuple[str, ...] = (
     "ellipse",
     "annulus_interface",
     "annulus",
+    "ample_beam",
     "ample_collapse",
     "ample_column",
     "reload",
@@ -41,6 +42,7 @@ MODULES: tuple[str, ...] = (
     "strip_footing_mpm",
     "tangent_check",
     "thick_cylinder",
+    "units",
 )
 """Files of this folder with a ``PROBLEM`` or ``PROBLEMS``, sorted."""
 

@@ -1,0 +1,78 @@
+"""Case files of screw piles: what is read, and what is refused before anything is meshed."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from install_mpm.conventions import Kinematics
+from workflows.case import case_text, parse_case, read_case
+from workflows.errors import CaseError
+from workflows.runner import stage_named, stages_of
+from workflows.screw_case import ScrewCase
+
+CASES = Path(__file__).parents[2] / "cases"
+QUICK = CASES / "screwpile_quick.toml"
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("screwpile_*.toml")), ids=lambda p: p.stem)
+def test_every_case_is_valid_and_its_text_reads_back(path):
+    case, text = read_case(path)
+    assert isinstance(case, ScrewCase)
+    assert case.kinematics == Kinematics.THREE_D
+    assert parse_case(text, "again") == case
+    assert case_text(case) == text
+
+
+def test_the_stages_of_a_screw_pile_begin_with_the_installation():
+    case, _ = read_case(QUICK)
+    assert stages_of(case)[0].name == "install"
+    with pytest.raises(CaseError, match="there is no stage 'serve'"):
+        stage_named("serve", case)
+
+
+REFUSED = {
+    "plate thinner than the mesh can hold": (
+        ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='20 mm', height='0.25 m'}]"],
+        "cannot hold a plate 0.02 m thick",
+    ),
+    "pile deeper than the box": (["box.depth='2.4 m'"], "make box.depth at least"),
+    "pitch smaller than the plate": (
+        ["pile.helices=[{diameter='1 m', pitch='0.1 m', thickness='0.12 m', height='0.25 m'}]"],
+        "pitch 0.1 m is not larger than its thickness",
+    ),
+    "step beyond the rule at the edges": (["installation.step='0.1 m'"], "take at most"),
+    "start above ground": (["pile.embedment='0.5 m'"], "out of the ground; start deeper"),
+    "friction without normal stiffness": (["interface.normal_stiffness='0 Pa/m'"], "must be > 0"),
+    "plate no wider than the shaft": (["pile.shaft_diameter='1.2 m'"], "is not larger than"),
+    "box too narrow": (["box.width='2 m'"], "make it at least 2.5 m"),
+    "shaft too coarse": (["background_mesh.size_at_shaft='0.6 m'"], "too coarse for a shaft"),
+    "reset angle between the sides": (["installation.reset_angle='20 deg'"], "take a multiple"),
+    "phase without a way": (
+        ["installation.phases=[{name='in', turns=1.0}]"], "does not say how far the pile goes"
+    ),
+    "no phases": (["installation.phases=[]"], "installation.phases is empty"),
+    "pulled out of the ground": (
+        ["installation.phases=[{name='up', advance='-0.8 m'}]"], "leaves the ground"
+    ),
+    "adhesion beside sand": (
+        ["ground.soil={model='mohr_coulomb', youngs_modulus='20 MPa', poissons_ratio=0.25, "
+         "cohesion='1 kPa', friction_angle='35 deg'}", "ground.k0='jaky'"],
+        "has no undrained shear strength",
+    ),
+    "kinematics of a plane": (["kinematics='plane_strain'"], "leave the key out"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_cannot_be_is_refused_in_one_sentence(name):
+    overrides, said = REFUSED[name]
+    with pytest.raises(CaseError, match=said) as caught:
+        read_case(QUICK, overrides)
+    assert "\n" not in str(caught.value)
+
+
+def test_angles_and_lengths_have_units():
+    case, _ = read_case(QUICK, ["installation.reset_angle='45 deg'", "pile.hand='left'"])
+    assert case.installation.reset_angle == pytest.approx(np.pi / 4.0)
+    assert case.pile.sense == -1.0
