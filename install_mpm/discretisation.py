@@ -10,7 +10,7 @@ import numpy as np
 from install_mpm.assembly import SparsityPattern
 from install_mpm.cells import ReferenceCell
 from install_mpm.constitutive.dispatch import Materials
-from install_mpm.conventions import Kinematics
+from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.ground import GroundProfile
 from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.interface import InterfaceElements
@@ -50,6 +50,8 @@ class Discretisation(NamedTuple):
     By default an interior cell weighs its volume times the density, so that undisturbed ground
     stays in equilibrium however the points lie in the cells.
     """
+    gravity: float = GRAVITY
+    """Gravitational acceleration in m/s^2, or in the units of everything else."""
 
 
 class GeostaticGradient(NamedTuple):

@@ -10,7 +10,7 @@ from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.constitutive.dispatch import Materials, Model
 from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.constitutive.pressure_elasticity import bulk_modulus
-from install_mpm.conventions import GRAVITY, Kinematics
+from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
 from install_mpm.interface import (
@@ -189,7 +189,7 @@ class _StepSystem:
         self.external = np.zeros((n_nodes, dim))
         self.internal = np.zeros((n_nodes, dim))
         self.out_of_balance = np.zeros((n_nodes, dim))
-        body_force(mesh.cell_nodes, points, GRAVITY, self.external)
+        body_force(mesh.cell_nodes, points, model.gravity, self.external)
         if prescribed.force is not None:
             self.external += prescribed.force
         is_held = np.zeros(n_nodes, dtype=bool)

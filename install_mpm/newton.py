@@ -74,7 +74,7 @@ def solve_newton(
                 correction = solve(state.tangent, -state.residual)
         except SingularMatrixError:
             return NewtonResult(x, False, np.array(residuals))
-        x, state = _backtrack(evaluate, x, correction, residuals[-1])
+        x, state = _backtrack(evaluate, x, correction, state)
         if not state.is_admissible:
             break
         residuals.append(_relative(state))
@@ -83,29 +83,42 @@ def solve_newton(
 
 
 def _relative(state: Evaluation) -> float:
-    return float(np.linalg.norm(state.residual) / state.reference)
+    return _norm(state) / state.reference
+
+
+def _norm(state: Evaluation) -> float:
+    return float(np.linalg.norm(state.residual))
+
+
+def _growth(before: Evaluation, after: Evaluation) -> float:
+    """Return the growth of the residual: as a force or as a share, whichever grows less."""
+    force = _norm(after) / (_norm(before) or 1.0)
+    return min(force, force * before.reference / after.reference)
 
 
 def _backtrack(
     evaluate: Callable[[np.ndarray], Evaluation],
     x: np.ndarray,
     correction: np.ndarray,
-    residual: float,
+    before: Evaluation,
 ) -> tuple[np.ndarray, Evaluation]:
-    """Return the first admissible trial that does not increase the residual, else the best."""
-    best: tuple[np.ndarray, Evaluation] | None = None
+    """Return the first admissible trial that does not increase the residual, else the best.
+
+    The residual does not increase if its force does not, or if its share of the reference does not.
+    The reference changes from trial to trial: a falling force may be a rising share of it, and the
+    bending of a slender body begins with large forces that the supports share.
+    """
+    best: tuple[float, np.ndarray, Evaluation] | None = None
     for halving in range(BACKTRACKS + 1):
         trial = x + correction * 0.5**halving
         state = evaluate(trial)
-        if not state.is_admissible:
-            best = best or (trial, state)
-            continue
-        if _relative(state) <= GROWTH_ALLOWED * residual:
+        growth = _growth(before, state) if state.is_admissible else np.inf
+        if growth <= GROWTH_ALLOWED:
             return trial, state
-        if best is None or not best[1].is_admissible or _relative(state) < _relative(best[1]):
-            best = (trial, state)
+        if best is None or growth < best[0]:
+            best = (growth, trial, state)
     assert best is not None  # the loop above runs at least once
-    return best[0], evaluate(best[0])  # what an evaluation leaves behind has to be of this trial
+    return best[1], evaluate(best[1])  # what an evaluation leaves behind has to be of this trial
 
 
 def convergence_order(residuals: np.ndarray, round_off: float = ROUND_OFF) -> float:

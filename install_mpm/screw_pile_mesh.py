@@ -7,6 +7,7 @@ a whole number of its sides.
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import gmsh
 import numpy as np
@@ -20,6 +21,9 @@ WALL_SIDES = 24
 
 SECTIONS_PER_TURN = 16
 """Radial sections that a plate is lofted through in a turn."""
+
+LEAST_SECTIONS = 7
+"""Sections of a piece of a plate, however short: fewer are too far off the circle of the rim."""
 
 INSIDE_SHARE = 0.6
 """Of the shaft radius: where the sections of a plate begin, inside the shaft."""
@@ -79,7 +83,7 @@ def _draw_pile(pile: ScrewPile, top: float) -> list[tuple[int, int]]:
     tip, a = -pile.embedment, pile.shaft_radius
     bottom = tip + pile.tip_length
     shaft = [(3, occ.addCylinder(0.0, 0.0, bottom, 0.0, 0.0, top - bottom, a))]
-    tools = [_draw_plate(pile, helix) for helix in pile.helices]
+    tools = [piece for helix in pile.helices for piece in _draw_plate(pile, helix)]
     if pile.tip_length > 0.0:
         tools.append((3, occ.addCone(0.0, 0.0, tip, 0.0, 0.0, pile.tip_length, 0.0, a)))
     if not tools:
@@ -88,11 +92,23 @@ def _draw_pile(pile: ScrewPile, top: float) -> list[tuple[int, int]]:
     return list(body)
 
 
-def _draw_plate(pile: ScrewPile, helix: Helix) -> tuple[int, int]:
-    """Return the volume of a plate, lofted through radial rectangles."""
+def _draw_plate(pile: ScrewPile, helix: Helix) -> list[tuple[int, int]]:
+    """Return the volumes of a plate: one, or three if it thins towards its edges.
+
+    A loft is a spline: it would be off the plate on both sides of a bend in the thickness.
+    """
+    bends = []
+    if helix.edge_thickness is not None:
+        bends = [helix.taper_angle, helix.winding - helix.taper_angle]
+    ends = np.unique([0.0, *bends, helix.winding])
+    return [_draw_piece(pile, helix, start, end) for start, end in pairwise(ends)]
+
+
+def _draw_piece(pile: ScrewPile, helix: Helix, start: float, end: float) -> tuple[int, int]:
+    """Return the volume of a plate between two winding angles, lofted through radial rectangles."""
     occ = gmsh.model.occ
-    n_sections = int(np.ceil(SECTIONS_PER_TURN * helix.turns)) + 1
-    windings = np.linspace(0.0, helix.winding, n_sections)
+    n_sections = int(np.ceil(SECTIONS_PER_TURN * (end - start) / (2.0 * np.pi))) + 1
+    windings = np.linspace(start, end, max(n_sections, LEAST_SECTIONS))
     wires = []
     for winding, thickness in zip(windings, thickness_at(helix, windings), strict=True):
         level = pile.leading_level(helix) + helix.pitch * winding / (2.0 * np.pi)

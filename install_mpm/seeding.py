@@ -20,6 +20,7 @@ def seed_points(
     *,
     kinematics: Kinematics = Kinematics.PLANE_STRAIN,
     is_soil: np.ndarray | None = None,
+    gravity: float = GRAVITY,
 ) -> MaterialPoints:
     """Return the material points of level ground with its K0 stress and the strain to match.
 
@@ -27,7 +28,7 @@ def seed_points(
 
     ``is_soil`` (n_cells,) says which cells are filled; by default those below z = 0.  The
     logarithmic strain of the initial stress is referred to the initial configuration, so J = 1 at
-    the start.
+    the start.  ``gravity`` (m/s^2) is what makes mass of weight.
     """
     coordinates, shares = sub_region_points(cell, per_direction)
     vertices = mesh.nodes[mesh.cell_nodes[:, : cell.n_vertices]]
@@ -44,7 +45,7 @@ def seed_points(
     return MaterialPoints(
         position=position,
         displacement=np.zeros_like(position),
-        mass=volume * unit_weights(ground)[state.material] / GRAVITY,
+        mass=volume * unit_weights(ground)[state.material] / gravity,
         volume=volume,
         volume_ratio=np.ones(n_points),
         elastic_log_strain=state.elastic_strain,

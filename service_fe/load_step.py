@@ -21,7 +21,7 @@ from install_mpm.constitutive.dispatch import Materials
 from service_fe.axisymmetric_forms import AxisymmetricForms
 from service_fe.interface_forms import InterfaceForms, InterfaceResponse
 from service_fe.linear_solver import FactorisationError, TangentSolver
-from service_fe.material_map import SoilResponse, soil_response
+from service_fe.material_map import SoilResponse, elastic_tangent, soil_response
 from service_fe.newton import StepNotConvergedError, solve_newton
 from service_fe.options import ServiceNumerics
 from service_fe.rigid_pile import PileControl
@@ -102,7 +102,7 @@ class LoadStep:
     """What is imposed in one step on a model in an accepted state.
 
     ``support_motion`` and ``external_force`` are (node, 2) in m and N; see
-    ``ServiceProblem.solve``.
+    ``ServiceProblem.solve``.  With ``damping`` the soil has a viscous stress beside its own.
     """
 
     def __init__(
@@ -112,8 +112,10 @@ class LoadStep:
         control: PileControl,
         support_motion: np.ndarray,
         external_force: np.ndarray,
+        damping: float = 0.0,
     ) -> None:
         self.model, self.state, self.control = model, state, control
+        self._viscosity = damping * elastic_tangent(model.materials, state) if damping else None
         self.support_motion = np.where(model.is_fixed, support_motion, 0.0)
         self.external_force = external_force
         self._fixed_dofs = np.flatnonzero(model.is_fixed)
@@ -155,16 +157,19 @@ class LoadStep:
     def evaluate(self, unknowns: Unknowns) -> Trial:
         """Return the response, the out-of-balance force and its relative size."""
         model, state = self.model, self.state
-        soil = soil_response(model.materials, state, model.soil.strain(unknowns.displacement))
+        strain = model.soil.strain(unknowns.displacement)
+        soil = soil_response(model.materials, state, strain)
+        stress = soil.stress
+        if self._viscosity is not None:
+            stress = stress + np.einsum("qij,qj->qi", self._viscosity, strain)
+            soil = soil._replace(tangent=soil.tangent + self._viscosity)
         interface = model.interface.response(
             model.interface_parameters,
             state.interface_traction,
             model.interface.relative_displacement(unknowns.displacement, unknowns.motion),
         )
         interface_force, internal_pile_force = model.interface.forces(interface.traction)
-        soil_residual = (
-            model.soil.internal_force(soil.stress) + interface_force - self.external_force
-        )
+        soil_residual = model.soil.internal_force(stress) + interface_force - self.external_force
         pile_force = internal_pile_force - model.pile_weight
         free_soil = np.where(model.is_fixed, 0.0, soil_residual)
         loaded_pile = np.where(self.control.is_loaded, pile_force - self.control.load, 0.0)

@@ -51,3 +51,12 @@ def soil_response(
     return SoilResponse(
         stress, elastic_strain, state_variables, tangent, int(np.count_nonzero(status))
     )
+
+
+def elastic_tangent(materials: Materials, state: FEState) -> np.ndarray:
+    """Return the tangent (n_q, 6, 6) in Pa well inside the yield surface.
+
+    That is where half the elastic strain of ``state`` lies.
+    """
+    half = state._replace(elastic_strain=0.5 * state.elastic_strain)
+    return soil_response(materials, half, np.zeros((len(state.material), 6))).tangent

@@ -47,6 +47,8 @@ class ServiceNumerics:
     max_iterations: Annotated[int, Ge(3)] = 20
     max_cuts: Annotated[int, Ge(0)] = 6
     """Times a step may be halved before the run stops."""
+    damping: Annotated[float, Ge(0), Le(10)] = 0.0
+    """Viscous over elastic stress with which a step that does not converge is settled; 0: never."""
 
 
 @dataclass(frozen=True)

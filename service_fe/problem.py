@@ -196,6 +196,7 @@ class ServiceProblem:
         support_motion: np.ndarray | None = None,
         external_force: np.ndarray | None = None,
         guess: Unknowns | None = None,
+        damping: float = 0.0,
     ) -> Step:
         """Return the load step that leads from ``state`` to what is imposed.
 
@@ -212,6 +213,8 @@ class ServiceProblem:
         guess
             First guess of the increments, such as those of the step before; its prescribed part is
             replaced.
+        damping
+            Viscous over elastic stress; see ``settling``.
 
         Raises
         ------
@@ -220,4 +223,4 @@ class ServiceProblem:
         """
         motion = np.zeros_like(self.mesh.nodes) if support_motion is None else support_motion
         external = self.gravity(state) if external_force is None else external_force
-        return LoadStep(self.model, state, control, motion, external).solve(guess)
+        return LoadStep(self.model, state, control, motion, external, damping).solve(guess)

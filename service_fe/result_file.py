@@ -18,7 +18,7 @@ from service_fe.options import Displace, Programme, Release
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
 
 FORMAT = "screwpile-service-result"
-VERSION = 1
+VERSION = 2
 
 RECORDS = {"mesh": FEMesh, "integration": FEIntegrationPoints, "interface": FEInterfacePoints}
 """Groups of the file that all programmes share."""

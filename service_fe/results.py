@@ -49,6 +49,7 @@ class Curve(NamedTuple):
         _per_step("", "order of the last Newton iterations; NaN if too few", may_be_nan=True),
     ]
     cuts: Annotated[np.ndarray, _per_step("", "times the step was halved", "int64")]
+    settled: Annotated[np.ndarray, _per_step("", "damped parts of a settled step", "int64")]
     residual_history: Annotated[
         np.ndarray,
         Field(

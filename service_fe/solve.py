@@ -18,6 +18,8 @@ from service_fe.newton import StepNotConvergedError
 from service_fe.options import Programme, Release
 from service_fe.problem import ServiceProblem
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
+from service_fe.rigid_pile import PileControl
+from service_fe.settling import Settled, settle
 
 
 class ServiceError(RuntimeError):
@@ -46,6 +48,8 @@ class Advance(NamedTuple):
     increment: Unknowns
     iterations: int
     cuts: int
+    settled: int
+    """Damped parts."""
 
 
 def run(
@@ -143,7 +147,7 @@ def run_programme(
     """
     head_load = -float(problem.pile_load(state)[1])
     steps = imposed_steps(programme, head_load)
-    rows = [_Row(0.0, problem.whole_body * head_load, 0, 0, ())]
+    rows = [_Row(0.0, problem.whole_body * head_load, 0, 0, 0, ())]
     displacement = np.zeros_like(problem.mesh.nodes)
     guess, size = None, 0.0
     for number, imposed in enumerate(steps, start=1):
@@ -155,7 +159,8 @@ def run_programme(
                 f"programme {programme.name!r}, step {number} of {len(steps)} at"
                 f" {rows[-1].displacement:g} m: {error}; take smaller steps"
             ) from error
-        state, guess, size = taken.last.state, taken.increment, imposed.size
+        state, size = taken.last.state, imposed.size
+        guess = None if taken.settled else taken.increment
         displacement += taken.increment.displacement
         rows.append(_row(rows[-1].displacement, problem.whole_body, taken))
         observe(ServiceProgress(programme.name, number, len(steps), *rows[-1][:4]))
@@ -165,7 +170,9 @@ def run_programme(
 def advance(
     problem: ServiceProblem, state: FEState, imposed: ImposedStep, guess: Unknowns | None = None
 ) -> Advance:
-    """Return a whole step, halved as often as needed; ``guess`` may be the step before.
+    """Return a whole step, settled or halved as often as needed.
+
+    ``guess`` may be the step before.
 
     After a success the next part is twice as long again.
 
@@ -174,29 +181,41 @@ def advance(
     StepNotConvergedError
         If a part of 1 / 2^max_cuts of the step does not converge.
     """
-    done, share, cuts, iterations = 0.0, 1.0, 0, 0
+    done, share, cuts, iterations, settled = 0.0, 1.0, 0, 0, 0
     total = Unknowns(np.zeros_like(problem.mesh.nodes), np.zeros(3))
-    step = None
+    part = None
     while done < 1.0:
-        control = imposed.control(done, done + share)
         try:
-            step = problem.solve(state, control, guess=guess)
+            part = _part(problem, state, imposed.control(done, done + share), guess)
         except StepNotConvergedError:
-            if guess is not None:
-                guess = None
-                continue
+            guess = None
             cuts += 1
             share *= 0.5
             if share < 0.5**problem.numerics.max_cuts:
                 raise
             continue
-        state, done, iterations = step.state, done + share, iterations + step.iterations
-        total = total.plus(step.increment)
+        state, done, iterations = part.last.state, done + share, iterations + part.iterations
+        total, settled = total.plus(part.increment), settled + part.parts
         next_share = min(2.0 * share, 1.0 - done)
-        guess = step.increment.scaled(next_share / share)
+        guess = None if part.parts else part.increment.scaled(next_share / share)
         share = next_share
-    assert step is not None
-    return Advance(step, total, iterations, cuts)
+    assert part is not None
+    return Advance(part.last, total, iterations, cuts, settled)
+
+
+def _part(
+    problem: ServiceProblem, state: FEState, control: PileControl, guess: Unknowns | None
+) -> Settled:
+    """Return a part of a step, solved from ``guess``, from rest, or settled."""
+    for first in (guess, None) if guess is not None else (None,):
+        try:
+            step = problem.solve(state, control, guess=first)
+        except StepNotConvergedError:
+            if first is None and problem.numerics.damping == 0.0:
+                raise
+        else:
+            return Settled(step, step.increment, step.iterations, 0)
+    return settle(problem, state, control, problem.numerics.damping)
 
 
 class _Row(NamedTuple):
@@ -204,6 +223,7 @@ class _Row(NamedTuple):
     head_load: float
     iterations: int
     cuts: int
+    settled: int
     residuals: tuple[float, ...]
 
 
@@ -213,6 +233,7 @@ def _row(displacement: float, whole_body: float, taken: Advance) -> _Row:
         whole_body * taken.last.head_load,
         taken.iterations,
         taken.cuts,
+        taken.settled,
         taken.last.residuals,
     )
 
@@ -229,5 +250,6 @@ def _curve(rows: Sequence[_Row]) -> Curve:
         residual=np.array([row.residuals[-1] if row.residuals else 0.0 for row in rows]),
         convergence_order=np.array([convergence_order(np.array(row.residuals)) for row in rows]),
         cuts=np.array([row.cuts for row in rows], dtype=np.int64),
+        settled=np.array([row.settled for row in rows], dtype=np.int64),
         residual_history=history,
     )

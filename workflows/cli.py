@@ -134,9 +134,16 @@ def export(directory: Results) -> None:
 
 
 @app.command()
-def check(case: CaseFile, overrides: Overrides = None) -> None:
+def check(
+    case: CaseFile,
+    overrides: Overrides = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option("--plot", metavar="FILE.png", help="Draw the mesh around a screw pile."),
+    ] = None,
+) -> None:
     """Validate a case and forecast its size and time."""
-    from workflows.case import read_case
+    from workflows.case import CaseError, read_case
     from workflows.forecast import forecast, print_forecast
     from workflows.screw_case import ScrewCase
 
@@ -145,7 +152,13 @@ def check(case: CaseFile, overrides: Overrides = None) -> None:
         from workflows.screw_forecast import print_screw_forecast, screw_forecast
 
         print_screw_forecast(loaded, screw_forecast(loaded))
+        if plot is not None:
+            from workflows.screw_pictures import write_mesh_picture
+
+            write_mesh_picture(plot, loaded)
         return
+    if plot is not None:
+        raise CaseError(f"{case}: --plot draws the mesh of a screw pile only; leave it out")
     print_forecast(loaded, forecast(loaded))
 
 

@@ -155,7 +155,10 @@ def convergence(installed: InstalledState, results: list[ServiceResult]) -> dict
         "installation": convergence_figures(installed.history),
         **{
             result.model: {
-                entry.programme.name: convergence_figures(entry.curve)
+                entry.programme.name: {
+                    **convergence_figures(entry.curve),
+                    "settled_steps": int(np.count_nonzero(entry.curve.settled)),
+                }
                 for entry in result.programmes
             }
             for result in results

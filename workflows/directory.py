@@ -27,6 +27,13 @@ VIEW_POINTS = "paraview/material_points.vtu"
 VIEW_BACKGROUND = "paraview/background_mesh.vtu"
 VIEW_INSTALLED = "paraview/service_installed.vtu"
 VIEW_WISHED = "paraview/service_wished_in_place.vtu"
+VIEWS = "paraview"
+FRAMES = "paraview/frames"
+SCREW_VIEWS = tuple(
+    f"paraview/installed_{series}.vtu"
+    for series in ("pile_surface", "material_points", "background_mesh")
+)
+"""Views of the end of a screw pile installation."""
 
 INSTALL_KEYS = (
     "kinematics", "ground", "pile", "interface", "box", "background_mesh", "discretisation",

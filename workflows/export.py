@@ -87,7 +87,8 @@ def _six(tensor: np.ndarray) -> np.ndarray:
 
 
 def _in_3d(vectors: np.ndarray) -> np.ndarray:
-    return np.column_stack([vectors, np.zeros(len(vectors))])
+    """Return ``vectors`` (n, 2 or 3) with a third component, zero in the plane."""
+    return np.pad(vectors, ((0, 0), (0, 3 - vectors.shape[1])))
 
 
 def _write(path: Path, mesh: Any) -> None:

@@ -40,12 +40,20 @@ def write_report(directory: Path) -> Path:
 
 def page_html(results: Results, parts: list[Section]) -> str:
     """Return the whole page."""
+    kinematics = results.case.kinematics
+    name = kinematics.name.lower().replace("_", " ")
+    forces = "forces for the w" + PER_LENGTH[kinematics][1:-1]
+    heading = f"Pile installation and service · {name} · {forces}"
+    return filled_page(results.case.title, heading, _subtitle(results), parts)
+
+
+def filled_page(title: str, heading: str, subtitle: str, parts: list[Section]) -> str:
+    """Return a page with ``parts``; title, heading and subtitle are plain text."""
     template = Template((TEMPLATES / "report.html").read_text(encoding="utf-8"))
     return template.substitute(
-        title=escape(results.case.title),
-        kinematics=results.case.kinematics.name.lower().replace("_", " "),
-        forces="forces for the w" + PER_LENGTH[results.case.kinematics][1:-1],
-        subtitle=escape(_subtitle(results)),
+        title=escape(title),
+        heading=escape(heading),
+        subtitle=escape(subtitle),
         css=(TEMPLATES / "report.css").read_text(encoding="utf-8"),
         contents=" ".join(f'<a href="#{part.name}">{escape(part.title)}</a>' for part in parts),
         sections="\n".join(

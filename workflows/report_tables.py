@@ -27,7 +27,10 @@ SECTIONS = (
 )  # fmt: skip
 """Sections of the case that the table shows; the rest stands in the text of the case."""
 
-NAMES = {"k0": "K₀", "youngs_modulus": "Young's modulus", "poissons_ratio": "Poisson's ratio"}
+NAMES = {
+    "k0": "K₀", "youngs_modulus": "Young's modulus", "poissons_ratio": "Poisson's ratio",
+    "helices": "helix", "phases": "phase", "layers": "layer",
+}  # fmt: skip
 """Words for names of the code that do not read as such."""
 
 Row = list[str | Cell]
@@ -92,7 +95,7 @@ def spaced(name: str) -> str:
 
 def case_tables(case: Case) -> str:
     """Return what the case describes, a table for each section, in display units."""
-    titles = {section: list(_option_rows(getattr(case, section))) for section in SECTIONS}
+    titles = {section: list(option_rows(getattr(case, section))) for section in SECTIONS}
     titles["service"] = [_programme_row(programme) for programme in case.service.programmes]
     tables = "".join(
         f"<div><h3>{cell(spaced(section)).html}</h3>{table([], rows)}</div>"
@@ -110,13 +113,23 @@ def _programme_row(programme: Programme) -> Row:
     return [spaced(programme.name), f"{distance}, from the {programme.start} pile"]
 
 
-def _option_rows(options: Any) -> Iterator[Row]:
-    """Yield name and value of each field of an option dataclass, nested ones after it."""
+def option_rows(options: Any) -> Iterator[Row]:
+    """Yield name and value of each field of an option dataclass, with those of nested ones.
+
+    An option that is not given has no row.
+    """
     hints = get_type_hints(type(options), include_extras=True)
     for field in fields(options):
         value = getattr(options, field.name)
         if hasattr(value, "__dataclass_fields__"):
-            yield from _option_rows(value)
+            yield from option_rows(value)
+            continue
+        if isinstance(value, tuple) and value and hasattr(value[0], "__dataclass_fields__"):
+            for position, entry in enumerate(value, 1):
+                yield [Cell(cell(f"{NAMES[field.name]} {position}").html, "group"), ""]
+                yield from option_rows(entry)
+            continue
+        if value is None:
             continue
         metadata = get_args(hints[field.name])[1:]
         unit = next((entry.symbol for entry in metadata if isinstance(entry, Unit)), "")

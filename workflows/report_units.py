@@ -30,8 +30,15 @@ EXTENSIVE = {
         "N": (1e-3, "kN"),
         "N/m": (1e-6, "kN/mm"),
     },
+    Kinematics.THREE_D: {
+        "m^3": (1.0, "m³"),
+        "kg": (1e-3, "t"),
+        "N": (1e-3, "kN"),
+        "N m": (1e-3, "kN m"),
+        "J": (1e-3, "kJ"),
+    },
 }
-"""The same for what is counted per metre run of a wall, or for the whole of a round pile."""
+"""The same for what is counted per metre run of a wall, or for the whole of a pile."""
 
 FORCE_UNIT = {kinematics: units["N"][1] for kinematics, units in EXTENSIVE.items()} | {
     Kinematics.THREE_D: "kN"
@@ -41,6 +48,7 @@ FORCE_UNIT = {kinematics: units["N"][1] for kinematics, units in EXTENSIVE.items
 PER_LENGTH = {
     Kinematics.PLANE_STRAIN: "Whole pile, per metre run.",
     Kinematics.AXISYMMETRIC: "Whole round pile.",
+    Kinematics.THREE_D: "Whole pile.",
 }
 """What forces are for, in words."""
 

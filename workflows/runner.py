@@ -97,6 +97,18 @@ SCREW_STAGES = (
         reads=(), writes=(names.INSTALLED,),
         sources=("install_mpm", "workflows/stages/install.py"),
     ),
+    Stage(
+        "export", "screwpile export DIR", "write views for ParaView", names.INSTALL_KEYS,
+        reads=(names.INSTALLED,), writes=names.SCREW_VIEWS,
+        sources=(
+            "workflows/stages/export.py", "workflows/export.py", "workflows/screw_export.py",
+            "workflows/screw_frames.py",
+        ),
+    ),
+    Stage(
+        "report", "screwpile report DIR", "write the report", ("title", *names.INSTALL_KEYS),
+        reads=(names.INSTALLED,), writes=(names.REPORT,), sources=("workflows",),
+    ),
 )  # fmt: skip
 """Stages of a screw pile."""
 

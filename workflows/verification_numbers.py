@@ -20,8 +20,8 @@ def cells(check: Check) -> tuple[str, str, str, str, str, str]:
         number_text(check.computed, ".5g", SMALLEST_VALUE),
         number_text(check.reference, ".5g", SMALLEST_VALUE),
         number_text(check.error, "+.2g", SMALLEST_ERROR),
-        f"{check.tolerance:.2g}",
-        "met" if check.is_met else "FAILED",
+        "none" if check.tolerance is None else f"{check.tolerance:.2g}",
+        "shown" if check.tolerance is None else "met" if check.is_met else "FAILED",
     )
 
 

@@ -153,6 +153,24 @@ def test_mesh_follows_the_pile_and_is_wound_back(mesh, right_pile):
         np.testing.assert_allclose(back[far], mesh.nodes[far], atol=1e-12)
 
 
+def test_mesh_conforms_to_a_tapered_plate():
+    """Every facet of the plate is found, though its thickness bends where it begins to thin."""
+    tapered = Helix(1.0, 0.33, 0.12, 0.25, edge_thickness=0.06, taper_angle=1.0)
+    pile = ScrewPile(0.5, 1.2, (tapered,), 8e3)
+    mesh = generate_screw_mesh(pile, BOX, ScrewMeshOptions(0.15, 0.3, 0.4, 1.2, 0.05))
+    elements, part, _ = screw_surface.pile_elements(mesh, pile)
+    _, area, _ = screw_surface.place_points(elements, mesh)
+    names = part_names(pile)
+    of_part = np.bincount(np.repeat(part, 3), area, len(names))
+    a, r = pile.shaft_radius, tapered.radius
+    rim = r * (tapered.thickness * tapered.winding - 0.06 * tapered.taper_angle)
+    for name, exact in (
+        ("lower face", np.pi * (r**2 - a**2)), ("upper face", np.pi * (r**2 - a**2)),
+        ("rim", rim), ("leading edge", 0.06 * (r - a)), ("trailing edge", 0.06 * (r - a)),
+    ):  # fmt: skip
+        assert of_part[names.index(name)] == pytest.approx(exact, rel=0.05)
+
+
 def test_volume_of_a_tapered_plate():
     tapered = Helix(1.0, 0.33, 0.12, 0.25, edge_thickness=0.04, taper_angle=1.0)
     winding = np.linspace(0.0, tapered.winding, 200001)

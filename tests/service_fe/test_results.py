@@ -12,8 +12,9 @@ def curve_of(displacement, head_load):
     n = len(displacement)
     zero, count = np.zeros(n), np.zeros(n, dtype=np.int64)
     return Curve(
-        np.asarray(displacement), np.asarray(head_load), count, zero, zero, count, zero[:, None]
-    )
+        np.asarray(displacement), np.asarray(head_load), count, zero, zero, count, count,
+        zero[:, None],
+    )  # fmt: skip
 
 
 def elastic_plastic(direction=1.0, end=0.12):

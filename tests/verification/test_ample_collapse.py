@@ -1,7 +1,7 @@
 """AMPLE-COLLAPSE: both discretisations come to the same end as AMPLE, and the base carries it all.
 
-Claimed: with AMPLE's cell size within 5 %, with half of it within 1 % (the paper's scheme) or 1.5 %
-(the default), scaling with length and stress, and quadratic convergence.
+Claimed: the same while elastic; with AMPLE's cell size within 5 % of it at full load, with half of
+it within 1 %; statics of the mean stress; scaling with length and stress; quadratic convergence.
 """
 
 import numpy as np
@@ -34,9 +34,7 @@ def test_length_and_stress_scale(scheme):
 
 
 @pytest.mark.slow
-def test_the_papers_scheme_meets_all_checks_and_the_default_comes_close():
-    """The default discretisation runs out 1.2 % farther than AMPLE, beyond the 1 % allowed."""
+def test_all_checks_are_met_at_another_scale():
     outcome = collapse_against_ample(width=4.0, rho=1500.0)
-    missed = [check for check in outcome.checks if not check.is_met]
-    assert all("default" in check.quantity for check in missed)
-    assert all(abs(check.error) < 0.015 for check in missed)
+    assert [check.quantity for check in outcome.checks if not check.is_met] == []
+    assert "does not lock" in outcome.remarks[1]

@@ -1,20 +1,20 @@
-"""PA2 and AMPLE-BEAM: the tip of a cantilever against the elastica and against AMPLE.
+"""PA2 and AMPLE-BEAM: the tip of a cantilever against beams of depth and none, and against AMPLE.
 
-Claimed: extrapolated to depth zero, deflection and shortening agree with the elastica within 2 %;
-the cantilever itself misses the 2 % by a little; at AMPLE's depth the tip is within 2 % of AMPLE's;
-the supports carry the load, and Newton's method is quadratic.
+Claimed: deflection and shortening agree with the geometrically exact beam within 2 % at two depths,
+and extrapolated to depth zero with the elastica; the tip is within 2 % of AMPLE's; the supports
+carry the load, and Newton's method is quadratic.
 """
 
 import numpy as np
 import pytest
 
 from install_mpm.newton import convergence_order
-from workflows.verification.cantilever import ample_beam, cantilever
+from workflows.verification.ample_beam import ample_beam
+from workflows.verification.cantilever import cantilever
 
 
-def check_all(outcome, *, open_misses=()):
-    missed = [check.quantity for check in outcome.checks if not check.is_met]
-    assert missed == list(open_misses)
+def check_all(outcome):
+    assert [check.quantity for check in outcome.checks if not check.is_met] == []
     orders = [convergence_order(np.array(history)) for history in outcome.residual_histories]
     assert np.nanmedian(orders) > 1.8
 
@@ -26,8 +26,14 @@ def test_small_load():
 
 @pytest.mark.slow
 def test_full_load():
-    """The elastica neither stretches nor shears; at depth d that is 2.7 %, more than is allowed."""
-    check_all(cantilever(), open_misses=["deflection w of the tip at depth d [m]"])
+    """At depth d the solid is not the elastica, and the exact beam says by how much."""
+    outcome = cantilever()
+    check_all(outcome)
+    deviation = {row.quantity: row.error for row in outcome.checks if row.tolerance is None}
+    beside = "w of the tip at depth d, {} beside the elastica [m]"
+    assert deviation[beside.format("solid")] == pytest.approx(0.027, abs=5e-4)
+    assert deviation[beside.format("exact beam")] == pytest.approx(0.0207, abs=5e-4)
+    assert "the exact beam of that depth is +2.07%" in outcome.remarks[0]
 
 
 @pytest.mark.slow

@@ -10,13 +10,9 @@ import pytest
 
 from install_mpm.newton import convergence_order
 from workflows.verification.ample_column import ample_column
-from workflows.verification.column import (
-    SIXTY_POINTS,
-    MeshLaw,
-    column_under_its_weight,
-    squeeze,
-)
+from workflows.verification.column import column_under_its_weight
 from workflows.verification.references.ample import COLUMN, COLUMN_GIMP
+from workflows.verification.squeezed_column import SIXTY_POINTS, MeshLaw, squeeze
 
 
 def median_order(histories):

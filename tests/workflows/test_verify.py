@@ -13,9 +13,17 @@ from workflows import cli
 from workflows.errors import CaseError
 from workflows.verification import registry
 from workflows.verification.parameters import parameters_of, read_assignments
-from workflows.verification.problem import Check, Outcome, Problem, Series, at_least, relative
+from workflows.verification.problem import (
+    Check,
+    Outcome,
+    Problem,
+    Series,
+    at_least,
+    relative,
+    shown,
+)
 from workflows.verification.runner import newton_statement, run_problem
-from workflows.verification_numbers import number_text
+from workflows.verification_numbers import cells, number_text
 
 PROBLEMS = registry.problems()
 
@@ -280,6 +288,12 @@ def test_numbers_for_machines(with_area, monkeypatch, tmp_path):
     assert problem["series"][0]["computed"] == [1e-2, 2.5e-3]
 
 
+def test_a_quantity_without_demand_is_shown_and_fails_nothing():
+    row = shown("width, m", 5.0, 4.0)
+    assert row.is_met
+    assert cells(row) == ("width, m", "5", "4", "+0.25", "none", "shown")
+
+
 def test_page_is_the_same_each_time_and_old_pictures_go(with_area, monkeypatch, tmp_path):
     page, pictures = tmp_path / "page.md", tmp_path / "images" / "page"
     pictures.mkdir(parents=True)
@@ -332,7 +346,17 @@ def test_newton_has_to_be_quadratic():
     statement = newton_statement([(1e-1, 1e-3, 1e-7), linear, (1e-3,)], 1e-12)
     assert (statement.steps, statement.most_iterations) == (3, 2)
     assert (statement.median_order, statement.smallest_order) == pytest.approx((1.5, 1.0))
+    assert statement.quadratic_share == 0.5
     assert "too few" in newton_statement([(1e-3,)], 1e-12).text
+
+
+def test_newton_without_an_order_has_to_solve_at_once():
+    check = Check("", 1.0, 1.0, 0.0, 0.0)
+    straight, slow = (1e-1, 1e-13, 1e-14), (1e-13, 1e-13, 1e-13, 1e-14)
+    assert outcome_of(check, histories=(straight,)).is_met
+    assert not outcome_of(check, histories=(straight, slow)).is_met
+    assert "Newton" in outcome_of(check, histories=(straight,)).checks[-1].quantity
+    assert len(outcome_of(check).checks) == 1
 
 
 def test_identifiers_are_unique_and_in_natural_order():

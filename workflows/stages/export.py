@@ -10,14 +10,16 @@ from __future__ import annotations
 from pathlib import Path
 
 from workflows import directory as names
-from workflows.case import Case
+from workflows.case import AnyCase
 from workflows.export import export_background_mesh, export_material_points, export_service
 from workflows.progress import Advance, no_progress
+from workflows.screw_case import ScrewCase
+from workflows.screw_export import export_screw_pile
 from workflows.state_files import read_checked
 
 
-def run(case: Case, directory: Path, _advance: Advance = no_progress) -> list[str]:
-    """Write the views of the installed state and of both service models.
+def run(case: AnyCase, directory: Path, _advance: Advance = no_progress) -> list[str]:
+    """Write the views of the installed state and, if the case has them, of both service models.
 
     Raises
     ------
@@ -25,6 +27,9 @@ def run(case: Case, directory: Path, _advance: Advance = no_progress) -> list[st
         If a file is missing or damaged, or belongs to another case.
     """
     installed = read_checked(directory, names.INSTALLED, case)
+    if isinstance(case, ScrewCase):
+        export_screw_pile(directory, installed)
+        return []
     service = read_checked(directory, names.SERVICE, case)
     wished = read_checked(directory, names.WISHED_SERVICE, case)
     export_material_points(directory / names.VIEW_POINTS, installed)

@@ -2,7 +2,8 @@
 
     python -m workflows.stages.install CASE -o DIR
 
-Reads the case; writes ``installed.h5`` and, while it runs, ``installed.checkpoint.h5``.
+Reads the case; writes ``installed.h5`` and, while it runs, ``installed.checkpoint.h5``; for a screw
+pile also frames in ``paraview/``.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ from workflows.manifest import created_by
 from workflows.progress import Advance, no_progress
 from workflows.report_units import FORCE_UNIT
 from workflows.screw_case import ScrewCase
+from workflows.screw_export import frame_interval, frame_writer
+from workflows.screw_theory import driven
 from workflows.state_files import read_checked
 
 
@@ -52,7 +55,7 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     start = _read_checkpoint(directory, case)
     start_measuring()
     if isinstance(case, ScrewCase):
-        installed = _screw_in(case, start, observe)
+        installed = _screw_in(case, directory, start, observe)
     else:
         installed = _jack_in(case, start, observe)
     write_installed_state(directory / INSTALLED, installed, created_by())
@@ -87,7 +90,16 @@ def _jack_in(case: Case, start: InstalledState | None, observe: Observer) -> Ins
     )
 
 
-def _screw_in(case: ScrewCase, start: InstalledState | None, observe: Observer) -> InstalledState:
+def _screw_in(
+    case: ScrewCase, directory: Path, start: InstalledState | None, observe: Observer
+) -> InstalledState:
+    """Install the pile; frames for ParaView and for the report are stored on the way."""
+    store_frame = frame_writer(directory, frame_interval(case))
+
+    def observe_and_store(state: InstalledState, progress: InstallationProgress) -> None:
+        store_frame(state, progress)
+        observe(state, progress)
+
     return install_screw_pile(
         case.ground,
         case.pile,
@@ -98,7 +110,7 @@ def _screw_in(case: ScrewCase, start: InstalledState | None, observe: Observer) 
         case.numerics,
         case_text(case),
         resume_from=start,
-        observe=observe,
+        observe=observe_and_store,
     )
 
 
@@ -113,10 +125,14 @@ def _times(directory: Path) -> str:
 
 
 def _torque(installed: InstalledState) -> list[str]:
-    """Return rotation and torque at the end, in one line."""
-    turns = abs(float(installed.pile.rotation)) / (2.0 * np.pi)
-    torque = float(installed.history.torque[-1])
-    return [f"rotation {turns:.3g} turns, torque {torque / 1e3:.2f} kN m"]
+    """Return rotation, torque and crowd force when the rig stopped, in one line."""
+    history = driven(installed.history)
+    turns = abs(float(history.rotation[-1])) / (2.0 * np.pi)
+    torque, force = float(history.torque[-1]), float(history.crowd_force[-1])
+    return [
+        f"rotation {turns:.3g} turns, torque {torque / 1e3:.2f} kN m, "
+        f"crowd force {force / 1e3:.2f} kN when the rig stopped"
+    ]
 
 
 def _renewals(history: History, unit: str) -> list[str]:

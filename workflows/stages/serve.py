@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from handoff.fe_state_file import HandedOffState
 from install_mpm.pile import buried_weight
 from service_fe.problem import ServiceProblem
 from service_fe.result_file import write_service_result
+from service_fe.results import ServiceResult
 from service_fe.solve import run as run_programmes
 from workflows.case import Case, case_text
 from workflows.directory import HANDED_OFF, SERVICE
@@ -48,7 +51,20 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         case_text=case_text(case),
     )
     write_service_result(directory / SERVICE, result, created_by())
-    return []
+    return settled_notes(result)
+
+
+def settled_notes(result: ServiceResult) -> list[str]:
+    """Return a line for each programme in which steps did not converge and were settled."""
+    settled = {
+        entry.programme.name: int(np.count_nonzero(entry.curve.settled))
+        for entry in result.programmes
+    }
+    return [
+        f"{name}: {count} steps were settled with damping"
+        for name, count in settled.items()
+        if count
+    ]
 
 
 if __name__ == "__main__":

@@ -20,6 +20,7 @@ from workflows.case import Case, case_text
 from workflows.directory import WISHED, WISHED_SERVICE
 from workflows.manifest import created_by
 from workflows.progress import Advance, no_progress, service_observer
+from workflows.stages.serve import settled_notes
 
 
 def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str]:
@@ -50,7 +51,7 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     )
     (directory / WISHED).mkdir(exist_ok=True)
     write_service_result(directory / WISHED_SERVICE, result, created_by())
-    return []
+    return settled_notes(result)
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from install_mpm.assembly import sparsity_pattern
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive import dispatch
-from install_mpm.conventions import Kinematics
+from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme
 from install_mpm.equilibrium import Prescribed
 from install_mpm.geostatic import geostatic_gradient
@@ -62,6 +62,7 @@ def make_body(
     per_direction: int = 2,
     is_soil: np.ndarray | None = None,
     interface: tuple[InterfaceElements, InterfacePoints] | None = None,
+    gravity: float = GRAVITY,
 ) -> Body:
     """Return a body of ``ground`` in the cells ``is_soil`` (n_cells,) of ``mesh`` (default z < 0).
 
@@ -76,20 +77,20 @@ def make_body(
     pattern = sparsity_pattern([mesh.cell_nodes, elements.nodes], len(mesh.nodes), dim)
     model = Discretisation(
         cell, elements, dispatch.pack([ground.soil]), pattern, mumps(pattern),
-        numerics or Numerics(),
-        kinematics=kinematics,
-        has_mean_dilatation=scheme == Scheme.CARRIERS,
-        scheme=scheme,
-        is_cell_weighted=is_cell_weighted,
+        numerics or Numerics(), kinematics=kinematics, scheme=scheme, gravity=gravity,
+        has_mean_dilatation=scheme == Scheme.CARRIERS, is_cell_weighted=is_cell_weighted,
     )  # fmt: skip
     return Body(
-        seed_points(mesh, cell, ground, per_direction, kinematics=kinematics, is_soil=is_soil),
+        seed_points(
+            mesh, cell, ground, per_direction, kinematics=kinematics, is_soil=is_soil,
+            gravity=gravity,
+        ),
         mesh,
         points,
         np.zeros_like(mesh.nodes),
         model,
         geostatic_gradient(ground, vertical=dim - 1),
-    )
+    )  # fmt: skip
 
 
 def stay(mesh: BackgroundMesh) -> BackgroundMesh:

@@ -15,6 +15,7 @@ import numpy as np
 from install_mpm import interface as interfaces
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic, NeoHookean
+from install_mpm.conventions import GRAVITY
 from install_mpm.discretisation import Scheme
 from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground
@@ -66,6 +67,8 @@ class Penetration:
     headroom: float = 0.0
     """Empty mesh above the surface."""
     max_cuts: int = 6
+    gravity: float = GRAVITY
+    """In m/s^2; without effect on weightless ground."""
 
     @property
     def ground(self) -> Ground:
@@ -166,6 +169,7 @@ def start_body(problem: Penetration) -> Body:
         scheme=problem.scheme,
         numerics=Numerics() if is_quadratic else Numerics(soft_stiffness=0.0),
         interface=make_interface(problem, mesh),
+        gravity=problem.gravity,
     )
     if is_quadratic:
         return body

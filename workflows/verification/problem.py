@@ -19,12 +19,13 @@ class Check:
     reference: float
     error: float
     """What is compared with the tolerance: relative unless ``quantity`` says otherwise."""
-    tolerance: float
+    tolerance: float | None
+    """None if the quantity is shown without a demand."""
 
     @property
     def is_met(self) -> bool:
         """Return whether the error lies within the tolerance (a NaN does not)."""
-        return abs(self.error) <= self.tolerance
+        return self.tolerance is None or abs(self.error) <= self.tolerance
 
 
 @dataclass(frozen=True)
@@ -84,6 +85,11 @@ class Problem:
 def relative(quantity: str, computed: float, reference: float, tolerance: float) -> Check:
     """Return the check of a relative error."""
     return Check(quantity, computed, reference, computed / reference - 1.0, tolerance)
+
+
+def shown(quantity: str, computed: float, reference: float) -> Check:
+    """Return the row of a relative error that is shown and not demanded."""
+    return Check(quantity, computed, reference, computed / reference - 1.0, None)
 
 
 def absolute(quantity: str, computed: float, reference: float, tolerance: float) -> Check:

@@ -20,6 +20,7 @@ MODULES: tuple[str, ...] = (
     "annulus_interface",
     "annulus",
     "annulus_slab",
+    "ample_beam",
     "ample_collapse",
     "ample_column",
     "reload",
@@ -37,6 +38,7 @@ MODULES: tuple[str, ...] = (
     "rigid_disc",
     "rotating_shaft",
     "sand_cavity",
+    "sand_footing_factors",
     "scheme_comparison",
     "screw_pile_work",
     "shaft_friction",
@@ -48,6 +50,8 @@ MODULES: tuple[str, ...] = (
     "tangent_check",
     "thin_helix",
     "thick_cylinder",
+    "units",
+    "weight_block",
 )
 """Files of this folder with a ``PROBLEM`` or ``PROBLEMS``, sorted."""
 

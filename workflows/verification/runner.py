@@ -14,7 +14,10 @@ from workflows.verification.parameters import Parameter, parameters_of
 from workflows.verification.problem import Check, Outcome, Problem, at_least
 
 QUADRATIC = 1.8
-"""Smallest median order of Newton's method that counts as quadratic."""
+"""Order of Newton's method, of a step and in the median of steps, that counts as quadratic."""
+
+STRAIGHT_ITERATIONS = 2
+"""Most iterations of a step of a problem that shows no order: the second meets round-off."""
 
 QUICK_SECONDS, OTHER_SECONDS = 5.0, 60.0
 """Typical time of a problem, for the estimate while they run."""
@@ -29,6 +32,8 @@ class NewtonStatement:
     median_order: float
     """NaN if no step took enough iterations to tell."""
     smallest_order: float
+    quadratic_share: float
+    """Of the steps that show an order; NaN likewise."""
 
     @property
     def text(self) -> str:
@@ -36,7 +41,24 @@ class NewtonStatement:
         counts = f"{self.steps} steps, at most {self.most_iterations} iterations"
         if np.isnan(self.median_order):
             return f"{counts}; too few above round-off to tell an order"
-        return f"{counts}; order {self.median_order:.2f} (median), {self.smallest_order:.2f} (min)"
+        return (
+            f"{counts}; order {self.median_order:.2f} (median), {self.smallest_order:.2f} (min);"
+            f" {self.quadratic_share:.0%} of the steps at {QUADRATIC} or more"
+        )
+
+    @property
+    def check(self) -> Check:
+        """The check of every problem that iterates.
+
+        The order of a step is that of its last three residuals above round-off.  Steps in which
+        points begin to yield or to slip find their branch first, so the median counts.  Where no
+        step leaves three residuals above round-off, each is solved by a straight correction.
+        """
+        if np.isnan(self.median_order):
+            text = "Newton iterations of a step, largest; solved at once, too few to show an order"
+            return Check(text, self.most_iterations, STRAIGHT_ITERATIONS,
+                         max(self.most_iterations - STRAIGHT_ITERATIONS, 0), 0.0)  # fmt: skip
+        return at_least("order of Newton's method, median", self.median_order, QUADRATIC)
 
 
 @dataclass(frozen=True)
@@ -91,12 +113,10 @@ class Verified:
 
     @property
     def checks(self) -> tuple[Check, ...]:
-        """Checks of the problem, and that Newton's method is quadratic where an order shows."""
+        """Checks of the problem, and that of Newton's method if the problem iterates."""
         newton = self.newton
         own = self.outcome.checks if self.outcome else ()
-        if newton is None or np.isnan(newton.median_order):
-            return own
-        return (*own, at_least("order of Newton's method, median", newton.median_order, QUADRATIC))
+        return own if newton is None else (*own, newton.check)
 
     @property
     def is_met(self) -> bool:
@@ -113,6 +133,7 @@ def newton_statement(histories: Sequence[Sequence[float]], round_off: float) -> 
         most_iterations=max(len(history) - 1 for history in histories),
         median_order=float(np.median(orders)) if orders.size else float("nan"),
         smallest_order=float(orders.min()) if orders.size else float("nan"),
+        quadratic_share=float((orders >= QUADRATIC).mean()) if orders.size else float("nan"),
     )
 
 

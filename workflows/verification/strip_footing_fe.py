@@ -16,7 +16,7 @@ import numpy as np
 
 from handoff.fe_mesh import FacetTag, FEMesh
 from handoff.gmsh_triangles import triangulate
-from install_mpm.constitutive.parameters import CoulombInterface, VonMises
+from install_mpm.constitutive.parameters import CoulombInterface, Tresca, VonMises
 from install_mpm.conventions import Unit
 from install_mpm.ground import Ground
 from install_mpm.newton import ROUND_OFF
@@ -72,6 +72,7 @@ def strip_footing(
     poissons_ratio: float = 0.49,
     relative_settlement: float = 40.0,
     steps: int = 32,
+    law: type[VonMises | Tresca] = VonMises,
 ) -> StripFootingResult:
     """Return the curve of a rough rigid footing that is pushed down in equal steps.
 
@@ -89,12 +90,12 @@ def strip_footing(
         Below 0.5.
     relative_settlement, steps
         Final settlement times E / (s_u width), and number of steps; the plateau begins near 10.
+    law
+        Either has the same strength in plane strain.
     """
     settlement = relative_settlement / rigidity_index
     mesh = footing_mesh(width, size_at_corner * width, size_far * width)
-    soil = VonMises(
-        rigidity_index * undrained_shear_strength, poissons_ratio, undrained_shear_strength
-    )
+    soil = law(rigidity_index * undrained_shear_strength, poissons_ratio, undrained_shear_strength)
     under_footing = (np.abs(mesh.nodes[:, 1]) < 1e-9) & (mesh.nodes[:, 0] < 0.5 * width + 1e-9)
     is_fixed = roller_supports(mesh)
     is_fixed[under_footing] = True
@@ -122,10 +123,29 @@ def strip_footing(
     )
 
 
-def footing_mesh(width: float, size_at_corner: float, size_far: float) -> FEMesh:
-    """Return the mesh of the right half: 2.5 widths wide, 2 deep, graded to the footing's edge."""
-    edge, side, depth = 0.5 * width, 2.5 * width, 2.0 * width
-    growth = (size_far - size_at_corner) / (2.0 * width)
+def footing_mesh(
+    width: float,
+    size_at_corner: float,
+    size_far: float,
+    *,
+    side: float = 2.5,
+    depth: float = 2.0,
+    growth: float | None = None,
+) -> FEMesh:
+    """Return the mesh of the right half, graded to the footing's edge.
+
+    Parameters
+    ----------
+    width, size_at_corner, size_far
+        Width of the footing and edge lengths in m.
+    side, depth
+        Size of the half over the width of the footing.
+    growth
+        Growth of the edge length with the distance from the footing's edge; the default reaches
+        ``size_far`` two widths away.
+    """
+    edge, side, depth = 0.5 * width, side * width, depth * width
+    growth = (size_far - size_at_corner) / (2.0 * width) if growth is None else growth
     outline = np.array([(0.0, -depth), (side, -depth), (side, 0.0), (edge, 0.0), (0.0, 0.0)])
     vertices, triangles = triangulate(
         outline, lambda x, z: min(size_far, size_at_corner + growth * float(np.hypot(x - edge, z)))
@@ -190,18 +210,44 @@ def pb1_fe(
 
     The finite elements of the service stage; the settlement is 40 su B / E.
     """
+    return _outcome_of(VonMises, B, su, E_over_su, nu)
+
+
+def pb1_fe_tresca(
+    *,
+    B: Annotated[float, Unit("m")] = 1.0,
+    su: Annotated[float, Unit("Pa")] = 10e3,
+    E_over_su: float = 1000.0,
+    nu: float = 0.49,
+) -> Outcome:
+    """A rough rigid strip of width B is pushed into weightless Tresca soil; see ``pb1_fe``."""
+    return _outcome_of(Tresca, B, su, E_over_su, nu)
+
+
+def _outcome_of(
+    law: type[VonMises | Tresca], width: float, strength: float, rigidity_index: float, nu: float
+) -> Outcome:
     return outcome(
         [
             strip_footing(
                 size,
-                width=B,
-                undrained_shear_strength=su,
-                rigidity_index=E_over_su,
+                width=width,
+                undrained_shear_strength=strength,
+                rigidity_index=rigidity_index,
                 poissons_ratio=nu,
+                law=law,
             )
             for size in SIZES
         ]
     )
 
 
-PROBLEM = Problem("PB1-FE", "Strip footing on clay, finite elements", pb1_fe, is_quick=False)
+PROBLEMS = (
+    Problem("PB1-FE", "Strip footing on clay, finite elements", pb1_fe, is_quick=False),
+    Problem(
+        "PB1-FE-TRESCA",
+        "Strip footing on Tresca soil, finite elements",
+        pb1_fe_tresca,
+        is_quick=False,
+    ),
+)

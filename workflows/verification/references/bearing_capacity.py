@@ -1,4 +1,4 @@
-"""PB1, PB3 and PB6: bearing capacity of strips and of a deep cylinder, exact or plasticity bounds.
+"""PB1 and PB3 to PB6: bearing capacity of footings and of a deep cylinder.
 
 The circle (PB2) is in ``circular_footing``.
 """
@@ -25,6 +25,39 @@ def strip_factors(*, friction_angle: float) -> tuple[float, float]:
     tangent = np.tan(friction_angle)
     n_q = np.exp(np.pi * tangent) * np.tan(0.25 * np.pi + 0.5 * friction_angle) ** 2
     return n_q, (n_q - 1.0) / tangent
+
+
+STRIP_WEIGHT = {
+    "smooth": {20: 1.579, 25: 3.461, 30: 7.653, 35: 17.58, 40: 43.2},
+    "rough": {20: 2.839, 25: 6.491, 30: 14.75, 35: 34.48, 40: 85.57},
+}
+"""N_gamma of a strip (PB4) by the angle of friction in degrees: method of characteristics, as
+published for the rough one by Martin (2005)."""
+
+CIRCLE_WEIGHT = {"smooth": {20: 1.271, 25: 2.971, 30: 7.11, 35: 18.03}}
+"""N_gamma of a circle, p = gamma D N_gamma / 2 (PB5): method of characteristics, extrapolated."""
+
+CIRCLE_SURCHARGE = {
+    "smooth": {20: 8.307, 25: 15.230, 30: 29.454, 35: 61.11},
+    "rough": {20: 9.617, 25: 18.402, 30: 37.21, 35: 80.8},
+}
+"""N_q of a circle (PB5): method of characteristics, extrapolated; 80.8 is known to 0.4."""
+
+
+def tabulated(table: dict[int, float], friction_angle: float) -> float:
+    """Return the factor of a table for a friction angle in rad, associated flow.
+
+    Raises
+    ------
+    ValueError
+        If the table does not have the angle, to a hundredth of a degree.
+    """
+    degrees = np.rad2deg(friction_angle)
+    nearest = min(table, key=lambda angle: abs(angle - degrees))
+    if abs(nearest - degrees) > 0.01:
+        known = ", ".join(f"{angle} deg" for angle in table)
+        raise ValueError(f"the factor is known for phi = {known}, not for {degrees:.6g} deg")
+    return table[nearest]
 
 
 def deep_cylinder_factor(*, adhesion: float) -> float:

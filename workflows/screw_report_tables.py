@@ -1,0 +1,188 @@
+"""Tables of the report of a screw pile: headline, torque by part, convergence, the case."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+
+import numpy as np
+
+from install_mpm.conventions import Kinematics
+from install_mpm.screw_history import ScrewHistory
+from install_mpm.state_file import InstalledState
+from workflows.compare import QUADRATIC_ORDER
+from workflows.report_html import Cell, cell, number, table
+from workflows.report_tables import group_row, option_rows, spaced
+from workflows.report_units import shown, significant
+from workflows.screw_case import ScrewCase
+from workflows.screw_report_curves import balance_error, turns
+from workflows.screw_theory import PartTorque, driven
+
+Row = list[str | Cell]
+
+
+def whole(value: float | None, unit: str = "", digits: int = 4) -> str:
+    """Return a quantity of the whole pile as text with its display unit."""
+    return shown(value, unit, digits, Kinematics.THREE_D)
+
+
+def summary_table(case: ScrewCase, installed: InstalledState) -> str:
+    """Return the figures by which an installation is judged."""
+    history = driven(installed.history)
+    rows: list[Row] = [
+        _group("when the rig stops"),
+        ["depth of the tip",
+         number(whole(case.pile.embedment + float(history.penetration[-1]), "m", 3))],
+        ["rotation", number(f"{significant(float(turns(case.pile, history)[-1]), 3)} turns")],
+        ["torque", number(whole(float(history.torque[-1]), "N m"))],
+        ["crowd force, downward", number(whole(float(history.crowd_force[-1]), "N"))],
+        *_release_rows(case, installed),
+        _group("largest on the way"),
+        ["torque", number(whole(float(history.torque.max()), "N m"))],
+        ["crowd force", number(whole(float(history.crowd_force.max()), "N"))],
+        ["lateral force", number(whole(_largest(history.lateral_force), "N"))],
+        ["overturning moment", number(whole(_largest(history.overturning_moment), "N m"))],
+        *_check_rows(installed, history),
+    ]  # fmt: skip
+    return table([], rows)
+
+
+def _release_rows(case: ScrewCase, installed: InstalledState) -> list[Row]:
+    """Return how the pile moved when the rig let go; nothing if it did not."""
+    history: ScrewHistory = installed.history
+    last = int((history.release_share == 0.0).sum()) - 1
+    if last == len(history.travel) - 1:
+        return []
+    rise = 1e3 * float(history.penetration[last] - history.penetration[-1])
+    back = 360.0 * float(np.diff(turns(case.pile, history)[[-1, last]])[0])
+    return [
+        _group("when the rig has let go"),
+        ["pile has come up", number(f"{significant(rise, 3)} mm")],
+        ["pile has turned back", number(f"{significant(back, 3)} °")],
+        ["torque that is left", number(whole(float(history.torque[-1]), "N m", 2))],
+        ["crowd force that is left", number(whole(float(history.crowd_force[-1]), "N", 2))],
+    ]
+
+
+def _check_rows(installed: InstalledState, history: ScrewHistory) -> list[Row]:
+    """Return what tells whether the figures can be trusted, over the driven steps."""
+    n_points, n_start = len(installed.material_points.mass), _points_at_start(installed)
+    moved = history.travel > 0.0
+    low, high = history.smallest_volume_ratio.min(), history.largest_volume_ratio.max()
+    worst = float(balance_error(history)[moved].max(initial=0.0))
+    torque = float(history.far_torque_mismatch[moved].max(initial=0.0))
+    force = float(history.far_force_mismatch.max())
+    return [
+        _group("checks"),
+        ["work of the rig", number(whole(float(history.rig_work.sum()), "J"))],
+        ["error of the power balance, all steps", number(whole(balance_of(history), "", 2))],
+        ["error of the power balance, worst step", number(whole(worst, "", 2))],
+        ["torque on the pile against the supports, worst step", number(whole(torque, "", 2))],
+        ["force on the pile against the supports, worst step", number(whole(force, "", 2))],
+        ["volume ratio J of the material points", number(f"{low:.3f} to {high:.3f}")],
+        ["material points", number(f"{n_points}, {n_points / n_start:.2f} of those at the start")],
+        ["cells", number(str(len(installed.background_mesh.cell_nodes)))],
+    ]
+
+
+def balance_of(history: ScrewHistory) -> float:
+    """Return the error of the power balance summed over all steps, over the work of the rig."""
+    taken = history.interface_work + history.soil_work - history.weight_work
+    rig = float(history.rig_work.sum())
+    return abs(rig - float(taken.sum())) / abs(rig) if rig else 0.0
+
+
+def _points_at_start(installed: InstalledState) -> int:
+    history = installed.history
+    added = int(history.injected_points.sum() - history.merged_points.sum())
+    return len(installed.material_points.mass) - added
+
+
+def _largest(vectors: np.ndarray) -> float:
+    return float(np.linalg.norm(vectors, axis=1).max())
+
+
+def _group(title: str) -> Row:
+    return group_row(title)[:2]
+
+
+def part_table(parts: list[PartTorque], total: float) -> str:
+    """Return the torque of each part in the last step beside its closed form."""
+    head: Row = ["part", *map(number, ("along the surface", "closed form", "deviation", "normal",
+                                       "sum", "share of all"))]  # fmt: skip
+    rows: list[Row] = []
+    for part in parts:
+        deviation = part.deviation
+        both = part.tangential + part.normal
+        rows.append([
+            part.name,
+            number(whole(part.tangential, "N m", 3)),
+            number(whole(part.closed_form, "N m", 3)),
+            number("–" if deviation is None else _percent(deviation, signed=True)),
+            number(whole(part.normal, "N m", 3)),
+            number(whole(both, "N m", 3)),
+            number(_percent(both / total) if total else "–"),
+        ])  # fmt: skip
+    with_form = [part for part in parts if part.closed_form is not None]
+    along, across = (sum(getattr(p, name) for p in parts) for name in ("tangential", "normal"))
+    form = sum(part.closed_form or 0.0 for part in with_form)
+    compared = sum(part.tangential for part in with_form)
+    rows.append([
+        Cell("<b>sum</b>"),
+        number(whole(along, "N m", 3)),
+        number(whole(form if with_form else None, "N m", 3)),
+        number(_percent(compared / form - 1.0, signed=True) if form else "–"),
+        number(whole(across, "N m", 3)),
+        number(whole(along + across, "N m", 3)),
+        "",
+    ])  # fmt: skip
+    return table(head, rows)
+
+
+def _percent(share: float, *, signed: bool = False) -> str:
+    text = f"{100.0 * share:+.1f} %" if signed else f"{100.0 * share:.0f} %"
+    return text.replace("-", "−")
+
+
+def convergence_table(case: ScrewCase, history: ScrewHistory) -> str:
+    """Return the statistics of Newton's method."""
+    order = history.convergence_order[np.isfinite(history.convergence_order)]
+    n_cut = int((history.cuts > 0).sum())
+    rows: list[Row] = [
+        ["steps", number(str(len(history.travel)))],
+        ["iterations, mean", number(significant(float(history.iterations.mean()), 3))],
+        ["iterations, most", number(str(int(history.iterations.max())))],
+        ["steps that had to be halved", number(f"{n_cut} ({_percent(n_cut / len(history.cuts))})")],
+        ["largest residual of an accepted step",
+         number(significant(float(history.residual.max()), 2))],
+        ["tolerance of the case", number(significant(case.numerics.tolerance, 2))],
+    ]  # fmt: skip
+    if len(order):
+        quadratic = float((order >= QUADRATIC_ORDER).mean())
+        rows.append(["order, median", number(significant(float(np.median(order)), 3))])
+        rows.append([f"order ≥ {QUADRATIC_ORDER:g}",
+                     number(f"{_percent(quadratic)} of {len(order)}")])  # fmt: skip
+    return table([], rows)
+
+
+def case_tables(case: ScrewCase) -> str:
+    """Return what the case describes, a table for each section, in display units."""
+    tables = "".join(
+        f"<div><h3>{cell(spaced(section.name)).html}</h3>"
+        f"{table([], option_rows(getattr(case, section.name)))}</div>"
+        for section in fields(case)
+        if is_dataclass(getattr(case, section.name))
+    )
+    return f'<div class="columns">{tables}</div>'
+
+
+def time_table(seconds: dict[str, float], n_steps: int) -> str:
+    """Return where the time of the installation went, in all and for each step."""
+    total = sum(seconds.values()) or 1.0
+    rows: list[Row] = [
+        [phase, number(f"{value:.1f} s"), number(f"{1e3 * value / n_steps:.0f} ms"),
+         number(_percent(value / total))]
+        for phase, value in seconds.items()
+    ]  # fmt: skip
+    rows.append([Cell("<b>sum</b>"), number(f"{total:.1f} s"),
+                 number(f"{1e3 * total / n_steps:.0f} ms"), ""])  # fmt: skip
+    return table(["", number("time"), number("per step"), number("share")], rows)
