@@ -83,17 +83,7 @@ def solve_newton(
 
 
 def _relative(state: Evaluation) -> float:
-    return _norm(state) / state.reference
-
-
-def _norm(state: Evaluation) -> float:
-    return float(np.linalg.norm(state.residual))
-
-
-def _growth(before: Evaluation, after: Evaluation) -> float:
-    """Return the growth of the residual: as a force or as a share, whichever grows less."""
-    force = _norm(after) / (_norm(before) or 1.0)
-    return min(force, force * before.reference / after.reference)
+    return float(np.linalg.norm(state.residual) / state.reference)
 
 
 def _backtrack(
@@ -104,19 +94,18 @@ def _backtrack(
 ) -> tuple[np.ndarray, Evaluation]:
     """Return the first admissible trial that does not increase the residual, else the best.
 
-    The residual does not increase if its force does not, or if its share of the reference does not.
-    The reference changes from trial to trial: a falling force may be a rising share of it, and the
-    bending of a slender body begins with large forces that the supports share.
+    The residual is that over its reference, which changes from trial to trial: by the force alone
+    the bending of a slender body, which begins with large forces that the supports share, stops.
     """
     best: tuple[float, np.ndarray, Evaluation] | None = None
     for halving in range(BACKTRACKS + 1):
         trial = x + correction * 0.5**halving
         state = evaluate(trial)
-        growth = _growth(before, state) if state.is_admissible else np.inf
-        if growth <= GROWTH_ALLOWED:
+        residual = _relative(state) if state.is_admissible else np.inf
+        if residual <= GROWTH_ALLOWED * _relative(before):
             return trial, state
-        if best is None or growth < best[0]:
-            best = (growth, trial, state)
+        if best is None or residual < best[0]:
+            best = (residual, trial, state)
     assert best is not None  # the loop above runs at least once
     return best[1], evaluate(best[1])  # what an evaluation leaves behind has to be of this trial
 

@@ -34,7 +34,7 @@ LAWS = {
 
 @pytest.fixture(scope="module", params=[CellType.TRI3, CellType.TRI6], ids=["tri3", "tri6"])
 def ground_mesh(request, pile, box, mesh_options):
-    return generate_background_mesh(pile, box, mesh_options, request.param)
+    return generate_background_mesh(pile, box, mesh_options, cell_type=request.param)
 
 
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)

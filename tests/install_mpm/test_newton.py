@@ -166,21 +166,6 @@ def test_residual_is_measured_against_the_reference():
     assert abs(result.solution[0] ** 2 - 2.0) <= 1e-7 * 1e6
 
 
-def test_falling_force_is_accepted_although_it_is_a_rising_share():
-    """The reference may fall faster than the residual; the full step is taken all the same."""
-
-    class Relaxing(Problem):
-        def __call__(self, x):
-            evaluation = super().__call__(x)
-            return evaluation._replace(reference=max(float(np.abs(x[0]) ** 3), 1e-9))
-
-    problem = Relaxing(lambda x: x * (1.0 + x), lambda x: 1.0 + 2.0 * x)
-    result = solve(problem, 1.0, tolerance=1e-6)
-    assert result.is_converged
-    np.testing.assert_allclose(problem.trials[1], 1.0 / 3.0)
-    np.testing.assert_allclose(problem.trials[2], 1.0 / 15.0)
-
-
 def test_state_of_the_last_evaluation_is_that_of_the_solution():
     """The caller keeps what the last evaluation left behind: it must belong to the solution.
 

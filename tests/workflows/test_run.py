@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 
 from workflows.case import read_case
+from workflows.directory import TIMING
 from workflows.progress import Reporter
 from workflows.runner import STAGES, is_up_to_date, run_case, run_from_case, run_from_files
 
@@ -33,7 +34,8 @@ def stale(directory, *overrides):
 
 
 def test_every_promised_file_is_there(quick_results):
-    promised = {file for stage in STAGES for file in stage.writes} | {"case.toml", "manifest.json"}
+    promised = {file for stage in STAGES for file in stage.writes}
+    promised |= {"case.toml", "manifest.json", TIMING}
     for name in promised:
         assert (quick_results / name).is_file(), name
     found = {
