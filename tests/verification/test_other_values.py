@@ -113,4 +113,5 @@ def test_every_modulus_and_length_has_a_range():
         for one in parameters_of(problem).values()
         if one.unit is not None and range_of_values(one.name, one.unit.symbol, one.default) is ANY
     }
-    assert {parameter for _, parameter in free} == {"sigma_xx", "sigma_yy", "tau_xy"}
+    stresses = {"sigma_xx", "sigma_yy", "tau_xy", "sigma_h", "sigma_v"}
+    assert {parameter for _, parameter in free} == stresses

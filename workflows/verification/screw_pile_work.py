@@ -38,7 +38,7 @@ from workflows.verification.problem import Outcome, Problem, Series, absolute, a
 MODULUS_OVER_STRENGTH, POISSON, UNIT_WEIGHT = 200.0, 0.49, 8e3
 INTERFACE_STIFFNESS = 50.0
 """Normal stiffness of the interface over Young's modulus per metre; the shear one is a tenth."""
-NUMERICS = Numerics(tolerance=1e-6)
+NUMERICS = Numerics(tolerance=1e-9)
 STEADY_FROM = 3
 """Steps that are left out of the split: the soil is loaded up in them."""
 
