@@ -126,7 +126,7 @@ class Verified:
 
 def newton_statement(histories: Sequence[Sequence[float]], round_off: float) -> NewtonStatement:
     """Return the statement on residual histories; steps that show no order are left out of it."""
-    orders = np.array([convergence_order(np.array(history), round_off) for history in histories])
+    orders = np.array([_order_shown(np.array(history), round_off) for history in histories])
     orders = orders[~np.isnan(orders)]
     return NewtonStatement(
         steps=len(histories),
@@ -135,6 +135,17 @@ def newton_statement(histories: Sequence[Sequence[float]], round_off: float) -> 
         smallest_order=float(orders.min()) if orders.size else float("nan"),
         quadratic_share=float((orders >= QUADRATIC).mean()) if orders.size else float("nan"),
     )
+
+
+def _order_shown(residuals: np.ndarray, round_off: float) -> float:
+    """Return the order of a step, NaN if it shows none.
+
+    Where the third of three residuals is round-off, they give a lower bound only: short of a
+    quadratic order it says nothing.
+    """
+    order = convergence_order(residuals, round_off)
+    is_bound = np.count_nonzero(residuals > round_off) < 3
+    return float("nan") if is_bound and order < QUADRATIC else order
 
 
 def run_problem(problem: Problem, values: Mapping[str, Any] | None = None) -> Verified:
