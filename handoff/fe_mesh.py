@@ -1,8 +1,9 @@
-"""The finite-element mesh of the installed pile: straight-edged 6-node triangles.
+"""The finite-element mesh of the installed pile: straight-edged quadratic simplices.
 
 The ground is meshed with a level surface, conforming to the pile at its installed depth; the
 surface is then warped to the profile that the installation left.  Two models with the same depth
-and a level surface get the identical mesh.
+and a level surface get the identical mesh.  The triangles around a flat-ended pile are made here,
+the tetrahedra around a screw pile in ``screw_mesh``.
 """
 
 from __future__ import annotations
@@ -30,38 +31,55 @@ SMALLEST_QUALITY = 0.1
 
 
 class FacetTag(IntEnum):
-    """Parts of the boundary of the soil; the first two are the pile's and equal ``PilePart``."""
+    """Parts of the boundary of the soil.  Those of the pile are not negative.
+
+    They are ``PilePart`` for a flat-ended pile and numbers of ``screw_pile.part_names`` for a screw
+    pile.
+    """
 
     PILE_BASE = 0
     PILE_SHAFT = 1
-    SYMMETRY = 2
-    SIDE = 3
-    BOTTOM = 4
-    SURFACE = 5
+    SYMMETRY = -1
+    SIDE = -2
+    BOTTOM = -3
+    SURFACE = -4
 
 
 class FEMesh(NamedTuple):
-    """Six-node triangles with straight edges and their boundary facets; x >= 0, z up."""
+    """Six-node triangles (x >= 0) or ten-node tetrahedra with straight edges, and their boundary.
 
-    nodes: Annotated[np.ndarray, Field(("node", 2), "m", "node coordinates (x, z)")]
+    z is up.
+    """
+
+    nodes: Annotated[
+        np.ndarray, Field(("node", "dim"), "m", "node coordinates (x, z) or (x, y, z)")
+    ]
     cell_nodes: Annotated[
         np.ndarray,
         Field(
-            ("cell", 6),
+            ("cell", "cell_node"),
             "",
-            "vertices counter-clockwise, then mid-sides of edges 01, 12, 20",
+            "vertices, then mid-sides of edges 01, 12, 20, in space also 03, 23, 13",
             "int64",
         ),
     ]
     facet_nodes: Annotated[
         np.ndarray,
         Field(
-            ("facet", 3), "", "boundary edges: ends, soil on the left hand, then mid-side", "int64"
+            ("facet", "facet_node"),
+            "",
+            "boundary facets: vertices, soil on the left hand of an edge, then mid-sides",
+            "int64",
         ),
     ]
     facet_tag: Annotated[
-        np.ndarray, Field(("facet",), "", "FacetTag of each boundary edge", "int64")
+        np.ndarray, Field(("facet",), "", "FacetTag of each boundary facet", "int64")
     ]
+
+
+def pile_facets(mesh: FEMesh) -> np.ndarray:
+    """Return the numbers (n,) of the facets on the pile."""
+    return np.flatnonzero(mesh.facet_tag >= 0)
 
 
 def make_mesh(
@@ -93,12 +111,12 @@ def make_mesh(
     tags = _facet_tags(vertices[facet_nodes[:, :2]].mean(axis=1), pile, tip_depth, box)
     warped = _warped(vertices, tip_depth, surface)
     mesh = FEMesh(_with_mid_sides(warped, cell_nodes), cell_nodes, facet_nodes, tags)
-    _check_quality(mesh)
+    check_quality(mesh, mesh_quality(mesh))
     return mesh
 
 
 def cell_areas(mesh: FEMesh) -> np.ndarray:
-    """Return the signed area (cell,) in m^2; negative for an inverted cell."""
+    """Return the signed area (cell,) in m^2 of triangles; negative for an inverted cell."""
     first, second, third = np.moveaxis(mesh.nodes[mesh.cell_nodes[:, :3]], 1, 0)
     a, b = second - first, third - first
     areas: np.ndarray = 0.5 * (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
@@ -106,7 +124,7 @@ def cell_areas(mesh: FEMesh) -> np.ndarray:
 
 
 def mesh_quality(mesh: FEMesh) -> np.ndarray:
-    """Return 2 r_in / r_out (cell,): 1 equilateral, 0 flat, negative for an inverted cell."""
+    """Return 2 r_in / r_out (cell,) of triangles: 1 equilateral, 0 flat, negative if inverted."""
     corners = mesh.nodes[mesh.cell_nodes[:, :3]]
     edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
     quality: np.ndarray = (
@@ -184,8 +202,18 @@ def _facet_tags(centres: np.ndarray, pile: Pile, tip_depth: float, box: Box) -> 
 def _warped(vertices: np.ndarray, tip_depth: float, surface: SurfaceProfile) -> np.ndarray:
     """Return the vertices moved vertically with the surface; this fades linearly to the tip."""
     x, z = vertices.T
-    fading = np.clip(1.0 + z / tip_depth, 0.0, 1.0)
-    return np.column_stack([x, z + fading * height_at(surface, x)])
+    return np.column_stack([x, z + surface_motion(surface, x, z, tip_depth)])
+
+
+def surface_motion(
+    surface: SurfaceProfile, x: np.ndarray, z: np.ndarray, still_depth: float
+) -> np.ndarray:
+    """Return the rise (n,) in m of the mesh with the surface, zero from ``still_depth`` m down.
+
+    ``x`` (n,) in m is the distance from the axis, ``z`` (n,) the level.
+    """
+    fading = np.clip(1.0 + z / still_depth, 0.0, 1.0)
+    return fading * height_at(surface, x)
 
 
 def _with_mid_sides(vertices: np.ndarray, cell_nodes: np.ndarray) -> np.ndarray:
@@ -198,13 +226,21 @@ def _with_mid_sides(vertices: np.ndarray, cell_nodes: np.ndarray) -> np.ndarray:
     return nodes
 
 
-def _check_quality(mesh: FEMesh) -> None:
-    quality = mesh_quality(mesh)
+def check_quality(mesh: FEMesh, quality: np.ndarray) -> None:
+    """Check that no cell has a ``quality`` (cell,) below ``SMALLEST_QUALITY``.
+
+    Raises
+    ------
+    MeshError
+        Naming the place of the worst cell.
+    """
     worst = int(np.argmin(quality))
     if quality[worst] < SMALLEST_QUALITY:
-        x, z = mesh.nodes[mesh.cell_nodes[worst, :3]].mean(axis=0)
+        n_vertices = mesh.nodes.shape[1] + 1
+        place = mesh.nodes[mesh.cell_nodes[worst, :n_vertices]].mean(axis=0)
         raise MeshError(
-            f"the finite-element cell at ({x:.2f} m, {z:.2f} m) has quality {quality[worst]:.2g}"
-            f" (1 is equilateral, at least {SMALLEST_QUALITY} is needed): the ground surface left"
-            " by the installation is too steep there; use a smaller handoff.size_at_pile"
+            f"the finite-element cell at ({', '.join(f'{x:.2f} m' for x in place)}) has quality"
+            f" {quality[worst]:.2g} (1 is regular, at least {SMALLEST_QUALITY} is needed): the"
+            " ground surface left by the installation is too steep there; use a smaller"
+            " handoff.size_at_pile"
         )

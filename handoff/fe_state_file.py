@@ -14,7 +14,7 @@ from install_mpm.seal import new_state_file, open_state_file
 from install_mpm.state_file import read_header, write_header
 
 FORMAT = "screwpile-handed-off-state"
-VERSION = 1
+VERSION = 2
 
 
 class FEState(NamedTuple):
@@ -36,36 +36,38 @@ class FEState(NamedTuple):
     interface_traction: Annotated[
         np.ndarray,
         Field(
-            ("interface_point", 2),
+            ("interface_point", "dim"),
             "Pa",
-            "traction on the soil in local axes (tangential, normal), tension positive",
+            "traction on the soil in local axes (tangential ..., normal), tension positive",
         ),
     ]
     pile_displacement: Annotated[
-        np.ndarray, Field((2,), "m", "displacement (x, z) of the rigid pile since the hand-over")
+        np.ndarray, Field(("dim",), "m", "displacement of the rigid pile since the hand-over")
     ]
 
 
 class FEIntegrationPoints(NamedTuple):
     """Where the stresses of an ``FEState`` are."""
 
-    position: Annotated[np.ndarray, Field(("integration_point", 2), "m", "position (x, z)")]
+    position: Annotated[np.ndarray, Field(("integration_point", "dim"), "m", "position")]
     volume: Annotated[
-        np.ndarray, Field(("integration_point",), "m^3", "integration weight, per metre run")
+        np.ndarray,
+        Field(("integration_point",), "m^3", "integration weight, of a wall per metre run"),
     ]
 
 
 class FEInterfacePoints(NamedTuple):
     """Where the interface tractions of an ``FEState`` are."""
 
-    position: Annotated[np.ndarray, Field(("interface_point", 2), "m", "position (x, z)")]
+    position: Annotated[np.ndarray, Field(("interface_point", "dim"), "m", "position")]
     normal: Annotated[
-        np.ndarray, Field(("interface_point", 2), "", "exact unit normal from soil to pile")
+        np.ndarray, Field(("interface_point", "dim"), "", "exact unit normal from soil to pile")
     ]
     area: Annotated[
-        np.ndarray, Field(("interface_point",), "m^2", "integration weight, per metre run")
+        np.ndarray,
+        Field(("interface_point",), "m^2", "integration weight, of a wall per metre run"),
     ]
-    part: Annotated[np.ndarray, Field(("interface_point",), "", "PilePart", "int64")]
+    part: Annotated[np.ndarray, Field(("interface_point",), "", "part of the pile", "int64")]
 
 
 class HandedOffPile(NamedTuple):
@@ -74,7 +76,7 @@ class HandedOffPile(NamedTuple):
     tip_depth: Annotated[np.ndarray, Field((), "m", "depth of the tip below the original surface")]
     head_load: Annotated[
         np.ndarray,
-        Field((), "N", "downward load that holds the modelled half: soil reaction less its weight"),
+        Field((), "N", "downward load that holds the modelled part: soil reaction less its weight"),
     ]
 
 

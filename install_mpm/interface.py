@@ -154,9 +154,14 @@ def frames_around_axis(normals: np.ndarray, positions: np.ndarray, rotation: flo
 
 def local_axes(points: InterfacePoints) -> np.ndarray:
     """Return the local axes (n, dim, dim) of the points: tangents first, normal last."""
-    if points.normal.shape[1] == 2:
-        return frames(points.normal, 0.0)
-    return frames_around_axis(points.normal, points.position, 0.0)
+    return axes_of(points.normal, points.position)
+
+
+def axes_of(normals: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """Return the local axes (n, dim, dim) of ``normals`` (n, dim) at ``positions`` (n, dim)."""
+    if normals.shape[1] == 2:
+        return frames(normals, 0.0)
+    return frames_around_axis(normals, positions, 0.0)
 
 
 class StepAxes(NamedTuple):

@@ -38,8 +38,10 @@ class Pile:
         return 2.0 * self.half_width
 
 
-WHOLE_PILE = {Kinematics.PLANE_STRAIN: 2.0, Kinematics.AXISYMMETRIC: 1.0}
-"""Whole pile over what the forces of a model stand for: half of a wall, or all of a round pile.
+WHOLE_PILE = {
+    Kinematics.PLANE_STRAIN: 2.0, Kinematics.AXISYMMETRIC: 1.0, Kinematics.THREE_D: 1.0
+}  # fmt: skip
+"""Whole pile over what the forces of a model stand for: half of a wall, or all of another pile.
 
 Histories, curves and reports are for the whole pile.
 """

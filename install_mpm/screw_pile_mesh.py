@@ -6,7 +6,7 @@ a whole number of its sides.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import gmsh
@@ -40,41 +40,60 @@ def generate_screw_mesh(pile: ScrewPile, box: Box, options: ScrewMeshOptions) ->
     It covers the ground within ``box.width`` of the axis (to the corners of the wall) and the
     headroom above it.
     """
+    return mesh_around_pile(pile, box, options, (-box.depth, 0.0, box.headroom))
+
+
+def mesh_around_pile(
+    pile: ScrewPile,
+    box: Box,
+    options: ScrewMeshOptions,
+    levels: Sequence[float],
+    wall_angle: float = 0.0,
+    optimisers: Sequence[str] = ("",),
+) -> BackgroundMesh:
+    """Return a mesh of 10-node tetrahedra conforming to the pile and to all ``levels``.
+
+    The levels in m, from the bottom to the top, are horizontal planes; the first and the last bound
+    the mesh.  The corners of the outer wall are turned by ``wall_angle`` in rad; ``optimisers`` are
+    gmsh's, in order.
+    """
     gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         gmsh.option.setNumber("General.NumThreads", 1)  # more threads: another mesh in every run
         gmsh.option.setNumber("Mesh.RandomSeed", options.random_seed + 1)
         gmsh.model.add("background")
-        _draw(pile, box)
+        _draw(pile, box.width, levels, wall_angle)
         _set_sizes(pile, box, options)
         gmsh.model.mesh.generate(3)
-        gmsh.model.mesh.optimize("")
+        for optimiser in optimisers:
+            gmsh.model.mesh.optimize(optimiser)
         gmsh.model.mesh.setOrder(2)
         return _collect()
     finally:
         gmsh.finalize()
 
 
-def _draw(pile: ScrewPile, box: Box) -> None:
-    """Draw soil and headroom as two volumes that share the ground surface, the pile cut out."""
+def _draw(pile: ScrewPile, width: float, levels: Sequence[float], wall_angle: float) -> None:
+    """Draw the volumes between the levels, which share their horizontal faces, less the pile."""
     occ = gmsh.model.occ
-    soil = _prism(box.width, -box.depth, box.depth)
-    air = _prism(box.width, 0.0, box.headroom)
-    body = _draw_pile(pile, top=box.headroom + pile.shaft_radius)
-    remaining, _ = occ.cut([(3, soil), (3, air)], body)
-    occ.fragment(remaining[:1], remaining[1:])
+    prisms = [(3, _prism(width, *ends, wall_angle)) for ends in pairwise(levels)]
+    body = _draw_pile(pile, top=levels[-1] + pile.shaft_radius)
+    remaining, _ = occ.cut(prisms, body)
+    if len(remaining) > 1:
+        occ.fragment(remaining[:1], remaining[1:])
     occ.synchronize()
 
 
-def _prism(radius: float, bottom: float, height: float) -> int:
+def _prism(radius: float, bottom: float, top: float, wall_angle: float) -> int:
     """Return the volume of a regular prism around the axis."""
     occ = gmsh.model.occ
-    angle = 2.0 * np.pi * np.arange(WALL_SIDES) / WALL_SIDES
+    angle = wall_angle + 2.0 * np.pi * np.arange(WALL_SIDES) / WALL_SIDES
     points = [occ.addPoint(radius * np.cos(a), radius * np.sin(a), bottom) for a in angle]
     lines = [occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
     surface = occ.addPlaneSurface([occ.addCurveLoop(lines)])
-    return next(tag for dim, tag in occ.extrude([(2, surface)], 0.0, 0.0, height) if dim == 3)
+    volumes = occ.extrude([(2, surface)], 0.0, 0.0, top - bottom)
+    return next(tag for dim, tag in volumes if dim == 3)
 
 
 def _draw_pile(pile: ScrewPile, top: float) -> list[tuple[int, int]]:

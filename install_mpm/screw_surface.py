@@ -36,19 +36,31 @@ def pile_elements(
 
     The normals (n_points, 3) belong to the points of the elements, at zero pile motion.
     """
-    boundary = np.argwhere(mesh.cell_neighbours < 0)
-    vertices = facets_opposite_vertices(mesh.cell_nodes[:, :4])[boundary[:, 0], boundary[:, 1]]
-    places = mesh.reference_nodes[vertices]
-    distance = distance_to_parts(pile, places.reshape(-1, 3)).reshape(*vertices.shape, -1)
-    farthest = distance.max(axis=1)
-    is_on_pile = farthest.min(axis=1) < ON_SURFACE * pile.shaft_diameter
-    part = farthest.argmin(axis=1)[is_on_pile]
-    cell, facet = boundary[is_on_pile].T
-    nodes = np.hstack([vertices[is_on_pile], facet_edge_nodes(mesh, cell, facet)])
+    cell, facet, part = boundary_parts(mesh, pile)
+    is_on_pile = part >= 0
+    cell, facet, part = cell[is_on_pile], facet[is_on_pile], part[is_on_pile]
+    vertices = facets_opposite_vertices(mesh.cell_nodes[:, :4])[cell, facet]
+    nodes = np.hstack([vertices, facet_edge_nodes(mesh, cell, facet)])
     elements = InterfaceElements(nodes, cell, *facet_rule(6, 3))
     normals, has_corner = _normals(pile, elements, part, mesh.reference_nodes)
     is_swept = ~has_corner & ~np.isin(part, edge_parts(pile))
     return elements._replace(is_swept=np.repeat(is_swept, 3)), part, normals
+
+
+def boundary_parts(
+    mesh: BackgroundMesh, pile: ScrewPile
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return cell, facet in it and part of the pile, each (n,), of the boundary facets of a mesh.
+
+    The part is -1 off the pile; the pile is at its starting depth and angle.
+    """
+    cell, facet = np.argwhere(mesh.cell_neighbours < 0).T
+    vertices = facets_opposite_vertices(mesh.cell_nodes[:, :4])[cell, facet]
+    places = mesh.reference_nodes[vertices]
+    distance = distance_to_parts(pile, places.reshape(-1, 3)).reshape(*vertices.shape, -1)
+    farthest = distance.max(axis=1)
+    is_on_pile = farthest.min(axis=1) < ON_SURFACE * pile.shaft_diameter
+    return cell, facet, np.where(is_on_pile, farthest.argmin(axis=1), -1)
 
 
 def _normals(

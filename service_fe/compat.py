@@ -31,7 +31,9 @@ HAS_BASIX_UFL = VERSION >= (0, 6)
 if HAS_BASIX_UFL:
     import basix.ufl
 
-CELL = "triangle"
+CELLS = {2: "triangle", 3: "tetrahedron"}
+"""Reference cell by dimension."""
+
 SCHEME = "default"
 
 
@@ -51,42 +53,44 @@ def quiet_compiler() -> Iterator[None]:
         root.setLevel(level)
 
 
-def quadrature_rule(degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return reference points (n, 2) and weights (n,) of the rule that forms of ``degree`` use."""
-    points, weights = basix.make_quadrature(basix.CellType.triangle, degree)
-    return np.asarray(points).reshape(-1, 2), np.asarray(weights)
+def quadrature_rule(degree: int, dim: int = 2) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rule of forms of ``degree`` on a simplex: points (n, dim) and weights (n,)."""
+    points, weights = basix.make_quadrature(getattr(basix.CellType, CELLS[dim]), degree)
+    return np.asarray(points).reshape(-1, dim), np.asarray(weights)
 
 
-def make_triangle_mesh(vertices: np.ndarray, triangles: np.ndarray) -> Any:
-    """Return a dolfinx mesh of straight triangles (n, 3) on ``vertices`` (m, 2) in m."""
-    comm = MPI.COMM_WORLD
-    cells = np.ascontiguousarray(triangles, dtype=np.int64)
+def make_simplex_mesh(vertices: np.ndarray, cells: np.ndarray) -> Any:
+    """Return a dolfinx mesh of straight simplices (n, dim + 1) on ``vertices`` (m, dim) in m."""
+    comm, dim = MPI.COMM_WORLD, vertices.shape[1]
+    rows = np.ascontiguousarray(cells, dtype=np.int64)
     if HAS_BASIX_UFL:
-        element = basix.ufl.element("Lagrange", CELL, 1, shape=(2,))
-        return create_mesh(comm, cells, vertices, ufl.Mesh(element))
-    return create_mesh(comm, cells, vertices, ufl.Mesh(ufl.VectorElement("Lagrange", CELL, 1)))
+        element = basix.ufl.element("Lagrange", CELLS[dim], 1, shape=(dim,))
+        return create_mesh(comm, rows, vertices, ufl.Mesh(element))
+    return create_mesh(comm, rows, vertices, ufl.Mesh(ufl.VectorElement("Lagrange", CELLS[dim], 1)))
 
 
 def make_displacement_space(mesh: Any) -> Any:
     """Return the space of continuous, piecewise quadratic displacements."""
+    dim = mesh.topology.dim
     if HAS_BASIX_UFL:
-        return fem.functionspace(mesh, basix.ufl.element("Lagrange", CELL, 2, shape=(2,)))
-    return fem.FunctionSpace(mesh, ufl.VectorElement("Lagrange", CELL, 2))
+        return fem.functionspace(mesh, basix.ufl.element("Lagrange", CELLS[dim], 2, shape=(dim,)))
+    return fem.FunctionSpace(mesh, ufl.VectorElement("Lagrange", CELLS[dim], 2))
 
 
 def make_quadrature_space(mesh: Any, shape: tuple[int, ...], degree: int) -> Any:
     """Return the space of values of ``shape`` at the integration points of ``degree``."""
+    cell = CELLS[mesh.topology.dim]
     if HAS_BASIX_UFL:
         element = basix.ufl.quadrature_element(
-            CELL, value_shape=shape, degree=degree, scheme=SCHEME
+            cell, value_shape=shape, degree=degree, scheme=SCHEME
         )
         return fem.functionspace(mesh, element)
     if len(shape) == 0:
-        element = ufl.FiniteElement("Quadrature", CELL, degree, quad_scheme=SCHEME)
+        element = ufl.FiniteElement("Quadrature", cell, degree, quad_scheme=SCHEME)
     elif len(shape) == 1:
-        element = ufl.VectorElement("Quadrature", CELL, degree, shape[0], quad_scheme=SCHEME)
+        element = ufl.VectorElement("Quadrature", cell, degree, shape[0], quad_scheme=SCHEME)
     else:
-        element = ufl.TensorElement("Quadrature", CELL, degree, shape, quad_scheme=SCHEME)
+        element = ufl.TensorElement("Quadrature", cell, degree, shape, quad_scheme=SCHEME)
     return fem.FunctionSpace(mesh, element)
 
 

@@ -1,7 +1,7 @@
 """Interface between pile and soil in the finite-element model: zero-thickness quadratic elements.
 
-The soil side is an edge of a quadratic triangle, the pile side moves rigidly.  With the relative
-displacement
+The soil side is a facet of a quadratic triangle or tetrahedron, the pile side moves rigidly.  With
+the relative displacement
 
     w = G (u, q) ,   G = [-N, T] in local axes (tangential, normal), pile minus soil,
 
@@ -10,31 +10,48 @@ the traction t(w) on the soil gives the forces int G^T t and the stiffness int G
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from handoff.fe_mesh import FacetTag, FEMesh
+from handoff.fe_mesh import FEMesh, pile_facets
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.conventions import Kinematics
-from install_mpm.pile import surface_normals, tangent_of
+from install_mpm.interface import axes_of
+from install_mpm.pile import surface_normals
+from service_fe import compat
+from service_fe.axisymmetric_forms import quadratic_shape
 from service_fe.kinematics import width
 from service_fe.rigid_pile import rigid_motion
 
-GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(3)
-"""Three points on (-1, 1): exact for the stiffness of quadratic edges."""
+TRIANGLE_DEGREE = 4
+"""The rule on a triangle: six points, exact for the stiffness of quadratic facets."""
 
-N_SOIL = 6
-"""Soil displacements of an element: two at each of three nodes; the pile's three follow."""
+NormalsOf = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""Exact unit normals (n, dim), from soil to pile, of parts (n,) at positions (n, dim)."""
+
+
+def flat_normals(part: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    """Return the normals (n, 2) of a flat-ended pile, those of its parts.
+
+    Raises
+    ------
+    ValueError
+        If the pile is one in space, which has normals of its own.
+    """
+    if positions.shape[1] == 3 and len(part):
+        raise ValueError("a pile in space has no flat normals; give those of its surface")
+    return surface_normals(part).reshape(positions.shape)
 
 
 class InterfaceResponse(NamedTuple):
     """Interface at all its integration points after an increment of relative displacement."""
 
     traction: np.ndarray
-    """Traction on the soil (n_i, 2) in Pa, (tangential, normal)."""
+    """Traction on the soil (n_i, dim) in Pa, (tangential ..., normal)."""
     tangent: np.ndarray
-    """Consistent tangent (n_i, 2, 2) in Pa/m."""
+    """Consistent tangent (n_i, dim, dim) in Pa/m."""
     status: np.ndarray
     """``STICK``, ``SLIP`` or ``OPEN`` (n_i,)."""
 
@@ -43,15 +60,15 @@ class InterfaceStiffness(NamedTuple):
     """Blocks of the stiffness that couple soil (s) and pile (p)."""
 
     dofs: np.ndarray
-    """Displacements 2 * node + axis (n_element, 6) of the soil side."""
+    """Displacements dim * node + axis (n_element, n_soil) of the soil side."""
     soil: np.ndarray
-    """K_ss (n_element, 6, 6)."""
+    """K_ss (n_element, n_soil, n_soil)."""
     soil_pile: np.ndarray
-    """K_sp (n_dofs, 3)."""
+    """K_sp (n_dofs, n_motions)."""
     pile_soil: np.ndarray
-    """K_ps (3, n_dofs)."""
+    """K_ps (n_motions, n_dofs)."""
     pile: np.ndarray
-    """K_pp (3, 3)."""
+    """K_pp (n_motions, n_motions)."""
 
 
 def edge_shape_functions(coordinate: np.ndarray) -> np.ndarray:
@@ -65,48 +82,83 @@ def edge_shape_functions(coordinate: np.ndarray) -> np.ndarray:
     )
 
 
+def facet_rule(dim: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return shape functions (n, n_facet_nodes) and weights (n,), sum one, of the rule on a facet.
+
+    Three points on an edge, six on a triangle: exact for the stiffness of quadratic facets.
+    """
+    if dim == 2:
+        points, weights = np.polynomial.legendre.leggauss(3)
+        return edge_shape_functions(points), 0.5 * weights
+    points, weights = compat.quadrature_rule(TRIANGLE_DEGREE)
+    return quadratic_shape(points)[0], 2.0 * weights
+
+
+def facet_geometry(mesh: FEMesh, facets: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return sizes (n,) in m or m^2 of ``facets`` and, in space, normals (n, 3) out of the soil.
+
+    None in the plane, where the surface of the pile is made of straight lines and the exact normals
+    are those of its edges.
+    """
+    corners = mesh.nodes[mesh.facet_nodes[facets, : mesh.nodes.shape[1]]]
+    if corners.shape[1] == 2:
+        return np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1), None
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    twice_area = np.linalg.norm(normal, axis=1)
+    return 0.5 * twice_area, normal / twice_area[:, None]
+
+
 class InterfaceForms:
-    """Discrete interface on the pile's facets of a mesh; there may be none."""
+    """Discrete interface on the pile's facets of a mesh; there may be none.
 
-    def __init__(self, mesh: FEMesh, kinematics: Kinematics = Kinematics.PLANE_STRAIN) -> None:
-        is_pile = np.isin(mesh.facet_tag, (FacetTag.PILE_BASE, FacetTag.PILE_SHAFT))
-        nodes = mesh.facet_nodes[is_pile]
-        ends = mesh.nodes[nodes[:, :2]]
-        shape = edge_shape_functions(GAUSS_POINTS)
-        n_gauss = len(GAUSS_POINTS)
-        self.n_dofs = 2 * len(mesh.nodes)
-        self.positions = np.einsum("qa,fai->fqi", shape, mesh.nodes[nodes]).reshape(-1, 2)
-        lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        self.areas = np.outer(lengths, 0.5 * GAUSS_WEIGHTS).ravel()
-        self.areas *= width(self.positions, kinematics)
-        self.parts = np.repeat(mesh.facet_tag[is_pile], n_gauss)
-        self.normals = surface_normals(self.parts)
-        self._dofs = (2 * nodes[:, :, None] + np.arange(2)).reshape(-1, N_SOIL)
-        self._point_dofs = np.repeat(self._dofs, n_gauss, axis=0)
+    ``normals`` gives the exact normals of the pile's parts.
+    """
 
-        axes = np.stack([tangent_of(self.normals), self.normals], axis=1)
-        soil = np.einsum("pki,qa->pqkai", axes, shape)
-        own = np.tile(np.arange(n_gauss), len(nodes))
-        self._relative = np.concatenate(
-            [
-                -soil[np.arange(len(own)), own].reshape(-1, 2, N_SOIL),
-                np.einsum("pki,pij->pkj", axes, rigid_motion(self.positions)),
-            ],
-            axis=2,
-        )
+    def __init__(
+        self,
+        mesh: FEMesh,
+        kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+        normals: NormalsOf = flat_normals,
+    ) -> None:
+        facets, dim = pile_facets(mesh), mesh.nodes.shape[1]
+        nodes = mesh.facet_nodes[facets]
+        shape, weights = facet_rule(dim)
+        self.n_dofs, self.n_points = mesh.nodes.size, len(weights)
+        self.n_soil = nodes.shape[1] * dim
+        self.positions = np.einsum("qa,fai->fqi", shape, mesh.nodes[nodes]).reshape(-1, dim)
+        self.parts = np.repeat(mesh.facet_tag[facets], len(weights))
+        self.normals = normals(self.parts, self.positions)
+        sizes, of_facet = facet_geometry(mesh, facets)
+        is_plane = of_facet is None
+        self.facet_normals = self.normals if is_plane else np.repeat(of_facet, len(weights), axis=0)
+        self.areas = np.outer(sizes, weights).ravel() * width(self.positions, kinematics)
+        self._dofs = (dim * nodes[:, :, None] + np.arange(dim)).reshape(-1, self.n_soil)
+        self._point_dofs = np.repeat(self._dofs, len(weights), axis=0)
+        self._relative = self._relative_displacement_matrices(shape)
+
+    def _relative_displacement_matrices(self, shape: np.ndarray) -> np.ndarray:
+        """Return G (n_i, dim, n_soil + n_motions) of all points."""
+        axes = axes_of(self.normals, self.positions)
+        own = np.tile(shape, (len(self._dofs), 1))
+        soil = -np.einsum("pki,pa->pkai", axes, own).reshape(*axes.shape[:2], self.n_soil)
+        pile = np.einsum("pki,pij->pkj", axes, rigid_motion(self.positions))
+        return np.concatenate([soil, pile], axis=2)
 
     def relative_displacement(self, displacement: np.ndarray, motion: np.ndarray) -> np.ndarray:
-        """Return pile minus soil (n_i, 2), local axes, of soil (node, 2) and pile motion (3,)."""
+        """Return pile minus soil (n_i, dim), local axes.
+
+        Of the displacement of the soil (node, dim) and the motion (n_motions,) of the pile.
+        """
         soil = displacement.ravel()[self._point_dofs]
-        pile = np.broadcast_to(motion, (len(soil), 3))
+        pile = np.broadcast_to(motion, (len(soil), len(motion)))
         return np.einsum("pkj,pj->pk", self._relative, np.concatenate([soil, pile], axis=1))
 
     def response(
         self, parameters: np.ndarray, traction_old: np.ndarray, slip_increment: np.ndarray
     ) -> InterfaceResponse:
-        """Return the response to ``slip_increment`` (n_i, 2) from ``traction_old`` (n_i, 2)."""
-        n_points = len(slip_increment)
-        traction, tangent = np.empty((n_points, 2)), np.empty((n_points, 2, 2))
+        """Return the response to ``slip_increment`` (n_i, dim) from ``traction_old`` (n_i, dim)."""
+        n_points, dim = slip_increment.shape
+        traction, tangent = np.empty((n_points, dim)), np.empty((n_points, dim, dim))
         status = np.zeros(n_points, dtype=np.int64)
         coulomb_interface.update_all(
             slip_increment, parameters, traction_old, traction, tangent, status
@@ -114,29 +166,31 @@ class InterfaceForms:
         return InterfaceResponse(traction, tangent, status)
 
     def forces(self, traction: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the internal forces on soil (node, 2) and pile (3,) of ``traction`` (n_i, 2).
+        """Return the internal forces on soil (node, dim) and pile (n_motions,).
 
-        The pile's is the force and moment of the pile on the soil.
+        ``traction`` is (n_i, dim).  The pile's is the force and moment of the pile on the soil.
         """
         point_forces = np.einsum("p,pkj,pk->pj", self.areas, self._relative, traction)
         soil = np.bincount(
-            self._point_dofs.ravel(), point_forces[:, :N_SOIL].ravel(), minlength=self.n_dofs
+            self._point_dofs.ravel(), point_forces[:, : self.n_soil].ravel(), minlength=self.n_dofs
         )
-        return soil.reshape(-1, 2), point_forces[:, N_SOIL:].sum(axis=0)
+        return soil.reshape(-1, traction.shape[1]), point_forces[:, self.n_soil :].sum(axis=0)
 
     def stiffness(self, tangent: np.ndarray) -> InterfaceStiffness:
-        """Return the blocks of the stiffness of ``tangent`` (n_i, 2, 2)."""
+        """Return the blocks of the stiffness of ``tangent`` (n_i, dim, dim)."""
         blocks = np.einsum(
             "p,pki,pkl,plj->pij", self.areas, self._relative, tangent, self._relative, optimize=True
         )
-        blocks = blocks.reshape(-1, len(GAUSS_POINTS), N_SOIL + 3, N_SOIL + 3).sum(axis=1)
-        soil_pile, pile_soil = np.zeros((self.n_dofs, 3)), np.zeros((self.n_dofs, 3))
-        np.add.at(soil_pile, self._dofs, blocks[:, :N_SOIL, N_SOIL:])
-        np.add.at(pile_soil, self._dofs, blocks[:, N_SOIL:, :N_SOIL].transpose(0, 2, 1))
+        size = blocks.shape[1]
+        blocks = blocks.reshape(-1, self.n_points, size, size).sum(axis=1)
+        soil_pile = np.zeros((self.n_dofs, size - self.n_soil))
+        pile_soil = np.zeros_like(soil_pile)
+        np.add.at(soil_pile, self._dofs, blocks[:, : self.n_soil, self.n_soil :])
+        np.add.at(pile_soil, self._dofs, blocks[:, self.n_soil :, : self.n_soil].transpose(0, 2, 1))
         return InterfaceStiffness(
             dofs=self._dofs,
-            soil=blocks[:, :N_SOIL, :N_SOIL],
+            soil=blocks[:, : self.n_soil, : self.n_soil],
             soil_pile=soil_pile,
             pile_soil=pile_soil.T,
-            pile=blocks[:, N_SOIL:, N_SOIL:].sum(axis=0),
+            pile=blocks[:, self.n_soil :, self.n_soil :].sum(axis=0),
         )

@@ -1,4 +1,4 @@
-"""What plane strain and axisymmetry change in the finite-element model, each in one place."""
+"""What the kinematics change in the finite-element model, each in one place."""
 
 from __future__ import annotations
 
@@ -16,25 +16,13 @@ Forms = SoilForms | AxisymmetricForms
 FORMS: dict[Kinematics, Callable[[FEMesh], Forms]] = {
     Kinematics.PLANE_STRAIN: SoilForms,
     Kinematics.AXISYMMETRIC: AxisymmetricForms,
+    Kinematics.THREE_D: SoilForms,
 }
-
-
-def soil_forms(mesh: FEMesh, kinematics: Kinematics) -> Forms:
-    """Return the discrete soil.
-
-    Raises
-    ------
-    ValueError
-        If there are no forms for ``kinematics``.
-    """
-    if kinematics not in FORMS:
-        known = " or ".join(kind.name for kind in FORMS)
-        raise ValueError(f"the service stage is two-dimensional; use {known}")
-    return FORMS[kinematics](mesh)
+"""The discrete soil on a mesh; that of plane strain and of space differ in the mesh alone."""
 
 
 def width(positions: np.ndarray, kinematics: Kinematics) -> np.ndarray:
-    """Return the extent (n,) in m of the body normal to its plane: 1 m or 2 pi r."""
+    """Return the extent (n,) in m of the body normal to its plane: 1 m or 2 pi r; 1 in space."""
     if kinematics == Kinematics.AXISYMMETRIC:
         return 2.0 * np.pi * positions[:, 0]
     return np.ones(len(positions))

@@ -6,7 +6,8 @@ complement
 
     (K_ll - K_ls K_ss^-1 K_sl) dq_l = -r_l - K_lp dq_p - K_ls K_ss^-1 (-r_s - K_sp dq_p)
 
-with one further back-substitution for each loaded motion.
+with one further back-substitution for each loaded motion.  What is imposed on the pile may be told
+in other components s, q = F s (``rigid_pile``); then K_sp F stands for K_sp, and F^T r_p for r_p.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from service_fe.linear_solver import FactorisationError, TangentSolver
 from service_fe.material_map import SoilResponse, elastic_tangent, soil_response
 from service_fe.newton import StepNotConvergedError, solve_newton
 from service_fe.options import ServiceNumerics
-from service_fe.rigid_pile import PileControl
+from service_fe.rigid_pile import PileControl, frame_of
 from service_fe.soil_forms import SoilForms
 
 
@@ -36,11 +37,11 @@ class Model(NamedTuple):
     solver: TangentSolver
     materials: Materials
     interface_parameters: np.ndarray
-    """Packed parameters (n_i, 5)."""
+    """Packed parameters (n_i, 7)."""
     is_fixed: np.ndarray
-    """Supports (node, 2) bool."""
+    """Supports (node, dim) bool."""
     pile_weight: np.ndarray
-    """Weight (3,) of the modelled part of the pile, in N, N, N m."""
+    """Weight (n_motions,) of the modelled part of the pile, in N and N m."""
     numerics: ServiceNumerics
 
 
@@ -48,9 +49,9 @@ class Unknowns(NamedTuple):
     """Increments since the accepted state."""
 
     displacement: np.ndarray
-    """Soil (node, 2) in m."""
+    """Soil (node, dim) in m."""
     motion: np.ndarray
-    """Pile (3,) in m, m, rad."""
+    """Pile (n_motions,) in m and rad."""
 
     def scaled(self, factor: float) -> Unknowns:
         """Return ``factor`` times these increments."""
@@ -67,16 +68,17 @@ class Step(NamedTuple):
     state: FEState
     increment: Unknowns
     pile_load: np.ndarray
-    """Load (3,) in N, N, N m on the modelled part of the pile at the end, besides its weight."""
+    """Load (n_motions,) in N and N m on the modelled part of the pile at the end, less weight."""
     support_reaction: np.ndarray
-    """Forces (node, 2) in N of the supports on the soil; zero at free nodes."""
+    """Forces (node, dim) in N of the supports on the soil; zero at free nodes."""
     residuals: tuple[float, ...]
     """Relative out-of-balance force before each iteration and at the end."""
 
     @property
     def head_load(self) -> float:
         """Downward load in N on the head of the modelled part."""
-        return float(-self.pile_load[1]) + 0.0  # no negative zero
+        vertical = self.increment.displacement.shape[1] - 1
+        return float(-self.pile_load[vertical]) + 0.0  # no negative zero
 
     @property
     def iterations(self) -> int:
@@ -91,9 +93,9 @@ class Trial(NamedTuple):
     soil: SoilResponse
     interface: InterfaceResponse
     soil_residual: np.ndarray
-    """Internal less external force (node, 2) in N."""
+    """Internal less external force (node, dim) in N."""
     pile_force: np.ndarray
-    """Internal force less weight (3,): the load that the pile needs."""
+    """Internal force less weight (n_motions,): the load that the pile needs."""
     out_of_balance: np.ndarray
     relative_residual: float
 
@@ -101,7 +103,7 @@ class Trial(NamedTuple):
 class LoadStep:
     """What is imposed in one step on a model in an accepted state.
 
-    ``support_motion`` and ``external_force`` are (node, 2) in m and N; see
+    ``support_motion`` and ``external_force`` are (node, dim) in m and N; see
     ``ServiceProblem.solve``.  With ``damping`` the soil has a viscous stress beside its own.
     """
 
@@ -115,14 +117,16 @@ class LoadStep:
         damping: float = 0.0,
     ) -> None:
         self.model, self.state, self.control = model, state, control
+        self._frame = frame_of(control)
         self._viscosity = damping * elastic_tangent(model.materials, state) if damping else None
         self.support_motion = np.where(model.is_fixed, support_motion, 0.0)
         self.external_force = external_force
         self._fixed_dofs = np.flatnonzero(model.is_fixed)
         lever = np.abs(model.interface.positions).max(initial=0.0) or 1.0
-        self._pile_scale = np.array([1.0, 1.0, 1.0 / lever])
+        self._pile_scale = np.full(len(control.motion), 1.0 / lever)
+        self._pile_scale[: support_motion.shape[1]] = 1.0
         self._start_reference = 0.0
-        unmoved = self.evaluate(Unknowns(np.zeros_like(self.support_motion), np.zeros(3)))
+        unmoved = self.evaluate(self._first_unknowns(None))
         self._start_reference = self._reference(unmoved.soil_residual, unmoved.pile_force)
 
     def solve(self, guess: Unknowns | None) -> Step:
@@ -143,16 +147,24 @@ class LoadStep:
 
     def _first_unknowns(self, guess: Unknowns | None) -> Unknowns:
         if guess is None:
-            return Unknowns(np.zeros_like(self.support_motion), np.zeros(3))
+            return Unknowns(np.zeros_like(self.support_motion), np.zeros(len(self.control.motion)))
+        own = np.where(self.control.is_loaded, self._in_frame(guess.motion), self.control.motion)
         return Unknowns(
             np.where(self.model.is_fixed, self.support_motion, guess.displacement),
-            np.where(self.control.is_loaded, guess.motion, self.control.motion),
+            self._frame @ own,
         )
+
+    def _in_frame(self, motion: np.ndarray) -> np.ndarray:
+        """Return the components s (n_motions,) of a motion q."""
+        return np.linalg.solve(self._frame, motion)
 
     def _evaluate_along(self, trial: Trial, direction: np.ndarray, length: float) -> Trial:
         displacement, motion = trial.unknowns
         step = length * direction
-        return self.evaluate(Unknowns(displacement + step[:-3].reshape(-1, 2), motion + step[-3:]))
+        of_soil, own = np.split(step, [displacement.size])
+        return self.evaluate(
+            Unknowns(displacement + of_soil.reshape(displacement.shape), motion + self._frame @ own)
+        )
 
     def evaluate(self, unknowns: Unknowns) -> Trial:
         """Return the response, the out-of-balance force and its relative size."""
@@ -172,7 +184,8 @@ class LoadStep:
         soil_residual = model.soil.internal_force(stress) + interface_force - self.external_force
         pile_force = internal_pile_force - model.pile_weight
         free_soil = np.where(model.is_fixed, 0.0, soil_residual)
-        loaded_pile = np.where(self.control.is_loaded, pile_force - self.control.load, 0.0)
+        own_force = pile_force @ self._frame
+        loaded_pile = np.where(self.control.is_loaded, own_force - self.control.load, 0.0)
         reference = self._reference(soil_residual, pile_force)
         is_valid = soil.n_failed == 0
         return Trial(
@@ -187,7 +200,7 @@ class LoadStep:
 
     def _reference(self, soil_residual: np.ndarray, pile_force: np.ndarray) -> float:
         """Return external force plus support reaction plus load or reaction of the pile, in N."""
-        pile = np.where(self.control.is_loaded, self.control.load, pile_force)
+        pile = np.where(self.control.is_loaded, self.control.load, pile_force @ self._frame)
         return float(
             np.linalg.norm(self.external_force)
             + np.linalg.norm(soil_residual[self.model.is_fixed])
@@ -206,24 +219,27 @@ class LoadStep:
         return float(residual / reference) if reference > 0.0 else 1.0
 
     def _jumps(self, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
-        """Return what the prescribed displacements (n_dofs,) and motions (3,) still lack."""
+        """Return what the prescribed displacements (n_dofs,) and motions s still lack."""
         displacement, motion = trial.unknowns
         soil = np.where(self.model.is_fixed, self.support_motion - displacement, 0.0)
-        pile = np.where(self.control.is_loaded, 0.0, self.control.motion - motion)
+        lacking = self.control.motion - self._in_frame(motion)
+        pile = np.where(self.control.is_loaded, 0.0, lacking)
         return soil.ravel(), pile
 
     def _has_jump(self, trial: Trial) -> bool:
         return any(jump.any() for jump in self._jumps(trial))
 
     def search_direction(self, trial: Trial) -> np.ndarray:
-        """Return the Newton correction (n_dofs + 3,) of soil displacement and pile motion."""
+        """Return the Newton correction (n_dofs + n_motions,) of soil displacement and motion s."""
         solver, fixed = self.model.solver, self._fixed_dofs
         stiffness = self.model.soil.stiffness(trial.soil.tangent)
         interface = self.model.interface.stiffness(trial.interface.tangent)
         solver.add_blocks(interface.dofs, interface.soil)
         soil_jump, pile_jump = self._jumps(trial)
+        frame = self._frame
+        soil_pile, pile_soil = interface.soil_pile @ frame, frame.T @ interface.pile_soil
 
-        right = -trial.soil_residual.ravel() - interface.soil_pile @ pile_jump
+        right = -trial.soil_residual.ravel() - soil_pile @ pile_jump
         if soil_jump.any():
             right -= solver.multiply(soil_jump)
         right[fixed] = 0.0
@@ -233,13 +249,14 @@ class LoadStep:
         if len(loaded) == 0:
             return np.concatenate([soil, pile_jump])
 
-        columns = interface.soil_pile[:, loaded].T.copy()
+        columns = soil_pile[:, loaded].T.copy()
         columns[:, fixed] = 0.0
         per_motion = np.array([solver.solve(column) for column in columns])
-        schur = interface.pile[np.ix_(loaded, loaded)] - interface.pile_soil[loaded] @ per_motion.T
-        force = self.control.load - trial.pile_force - interface.pile @ pile_jump
+        pile = frame.T @ interface.pile @ frame
+        schur = pile[np.ix_(loaded, loaded)] - pile_soil[loaded] @ per_motion.T
+        force = self.control.load - trial.pile_force @ frame - pile @ pile_jump
         try:
-            unknown = np.linalg.solve(schur, force[loaded] - interface.pile_soil[loaded] @ soil)
+            unknown = np.linalg.solve(schur, force[loaded] - pile_soil[loaded] @ soil)
         except np.linalg.LinAlgError as error:
             raise StepNotConvergedError("the pile has come loose from the soil", ()) from error
         pile_jump[loaded] = unknown
@@ -252,7 +269,8 @@ class LoadStep:
             state_variables=trial.soil.state_variables,
             material=self.state.material,
             interface_traction=trial.interface.traction,
-            pile_displacement=self.state.pile_displacement + trial.unknowns.motion[:2],
+            pile_displacement=self.state.pile_displacement
+            + trial.unknowns.motion[: len(self.state.pile_displacement)],
         )
         reaction = np.where(self.model.is_fixed, trial.soil_residual, 0.0)
         return Step(state, trial.unknowns, trial.pile_force, reaction, residuals)

@@ -4,70 +4,150 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
+from typing import NamedTuple
 
 import numpy as np
 
-from service_fe.options import Displace, Programme
-from service_fe.rigid_pile import PileControl, loaded, moved
+from service_fe.options import Cycles, Displace, Lateral, Load, Programme, Release, Rotate
+from service_fe.rigid_pile import PileControl, axial, head_frame, n_motions
+
+ALONG, ACROSS, UP, TILT_ACROSS, TILT, TWIST = range(6)
+"""Components of a motion in space in the frame of the head: translations, then rotations.
+
+``TILT`` is about the horizontal axis at 90 degrees from the direction of the load.
+"""
+
+COMPONENT = {"vertical": UP, "lateral": ALONG, "moment": TILT, "torque": TWIST}
 
 
-class ImposedStep(Protocol):
+class Mode(NamedTuple):
+    """Which motions of the pile are prescribed, and what the curve of a programme shows."""
+
+    frame: np.ndarray
+    """F (n_motions, n_motions) of ``rigid_pile``."""
+    is_loaded: np.ndarray
+    """(n_motions,) bool."""
+    measure: np.ndarray
+    """Unit vector (n_motions,): displacement and load of the curve are the components along it."""
+
+
+@dataclass(frozen=True, eq=False)
+class ImposedStep:
     """One step of a programme; ``control`` gives any part of it."""
+
+    mode: Mode
+    motion: np.ndarray
+    """Increment (n_motions,) of the prescribed motions in the whole step, in m and rad."""
+    load_start: np.ndarray
+    """Loads (n_motions,) on the modelled part at the start of the step, in N and N m."""
+    load_end: np.ndarray
 
     @property
     def size(self) -> float:
-        """Displacement in m or change of load in N of the whole step."""
+        """Displacement or change of load of the whole step, as the curve shows it."""
+        change = self.load_end - self.load_start if self.is_driven_by_load else self.motion
+        return float(self.mode.measure @ change)
+
+    @property
+    def is_driven_by_load(self) -> bool:
+        """Whether the motion that the curve shows is unknown."""
+        return bool(self.mode.is_loaded[self.mode.measure != 0.0].any())
 
     def control(self, start: float, end: float) -> PileControl:
         """Return what is imposed on the pile from share ``start`` to share ``end`` of the step."""
+        load = self.load_start + end * (self.load_end - self.load_start)
+        return PileControl(self.mode.is_loaded, (end - start) * self.motion, load, self.mode.frame)
 
 
-@dataclass(frozen=True)
-class DisplacementStep:
-    """The pile moves downward by ``displacement`` in m."""
-
-    displacement: float
-
-    @property
-    def size(self) -> float:
-        """Displacement of the whole step in m."""
-        return self.displacement
-
-    def control(self, start: float, end: float) -> PileControl:
-        """Return the motion from share ``start`` to share ``end`` of the step."""
-        return moved((end - start) * self.displacement)
-
-
-@dataclass(frozen=True)
-class HeadLoadStep:
-    """The load on the modelled part of the pile goes from ``load_start`` to ``load_end``, N."""
-
-    load_start: float
-    load_end: float
-
-    @property
-    def size(self) -> float:
-        """Change of load of the step in N."""
-        return self.load_end - self.load_start
-
-    def control(self, start: float, end: float) -> PileControl:
-        """Return the load at share ``end`` of the step."""
-        return loaded(self.load_start + end * self.size)
+def mode_of(programme: Programme, dim: int) -> Mode:
+    """Return what a programme prescribes, and what its curve shows."""
+    size = n_motions(dim)
+    is_loaded, measure, frame = np.zeros(size, dtype=bool), -axial(dim), np.eye(size)
+    if isinstance(programme, Release):
+        is_loaded = axial(dim) > 0.0 if dim == 2 else ~is_loaded
+    elif isinstance(programme, Lateral):
+        frame, measure = head_frame(programme.height, programme.direction), np.eye(6)[ALONG]
+        kept = [ALONG] if programme.head == "free" else [ALONG, TILT_ACROSS, TILT, TWIST]
+        is_loaded = ~np.isin(np.arange(6), kept)
+    elif isinstance(programme, Rotate) and programme.about == "axis":
+        measure = np.eye(6)[TWIST]
+        is_loaded[UP] = programme.advance is None
+    elif isinstance(programme, Rotate):
+        frame, measure = head_frame(0.0, programme.direction), np.eye(6)[TILT]
+        is_loaded = np.arange(6) != TILT
+    elif isinstance(programme, Load | Cycles):
+        frame, is_loaded = head_frame(programme.height, programme.direction), ~is_loaded
+        measure = _unit(_leading(programme))
+    return Mode(frame, is_loaded, measure)
 
 
-def imposed_steps(programme: Programme, head_load: float) -> list[ImposedStep]:
-    """Return the steps of a programme that starts at ``head_load`` in N on the modelled part."""
-    if isinstance(programme, Displace):
-        return _displacement_steps(programme)
-    loads = head_load * np.linspace(1.0, 0.0, programme.steps + 1)
-    return [HeadLoadStep(float(start), float(end)) for start, end in pairwise(loads)]
+def _leading(programme: Load | Cycles) -> str:
+    """Return the component that the curve of a programme driven by loads shows."""
+    if isinstance(programme, Cycles):
+        return programme.component
+    given = [name for name in ("lateral", "moment", "torque") if getattr(programme, name)]
+    return given[0] if given else "vertical"
 
 
-def _displacement_steps(programme: Displace) -> list[ImposedStep]:
+def _unit(component: str) -> np.ndarray:
+    """Return the unit vector (6,) of a component; the vertical one is positive downward."""
+    unit = np.zeros(6)
+    unit[COMPONENT[component]] = -1.0 if component == "vertical" else 1.0
+    return unit
+
+
+def imposed_steps(programme: Programme, load: np.ndarray) -> list[ImposedStep]:
+    """Return the steps of a programme that starts at ``load`` (n_motions,) in N and N m.
+
+    The load is that of the reference point on the modelled part of the pile.
+    """
+    dim = 2 if len(load) == n_motions(2) else 3
+    mode = mode_of(programme, dim)
+    start = load @ mode.frame
+    if isinstance(programme, Release):
+        shares = np.linspace(1.0, 0.0, programme.steps + 1)
+        return _load_steps(mode, [share * start for share in shares])
+    if isinstance(programme, Load):
+        end = sum(getattr(programme, name) * _unit(name) for name in COMPONENT)
+        return _load_steps(mode, list(np.linspace(start, end, programme.steps + 1)))
+    if isinstance(programme, Cycles):
+        return _load_steps(mode, _cyclic_loads(programme, start, mode.measure))
+    if isinstance(programme, Rotate):
+        motion = programme.rotation * mode.measure
+        motion[UP] = -(programme.advance or 0.0)
+        return _motion_steps(mode, motion, abs(programme.rotation), programme, start)
+    motion = programme.displacement * mode.measure
+    return _motion_steps(mode, motion, abs(programme.displacement), programme, start)
+
+
+def _load_steps(mode: Mode, loads: list[np.ndarray]) -> list[ImposedStep]:
+    """Return the steps from each of the loads (n_motions,) to the next."""
+    return [ImposedStep(mode, np.zeros(len(end)), start, end) for start, end in pairwise(loads)]
+
+
+def _cyclic_loads(programme: Cycles, start: np.ndarray, measure: np.ndarray) -> list[np.ndarray]:
+    """Return the loads (n_motions,) at the ends of all steps; each cycle ends at the mean."""
+    rest = start - (start @ measure) * measure
+    mean = rest + programme.mean * measure
+    first = np.linspace(start, mean, 2) if abs((mean - start) @ measure) > 0.0 else mean[None]
+    quarter = np.arange(1, programme.steps + 1) / programme.steps
+    wave = np.concatenate([quarter, 1.0 - quarter, -quarter, quarter - 1.0])
+    cyclic = [mean + programme.amplitude * share * measure for share in wave]
+    return [*first, *(cyclic * programme.cycles)]
+
+
+def _motion_steps(
+    mode: Mode,
+    motion: np.ndarray,
+    length: float,
+    programme: Displace | Lateral | Rotate,
+    load: np.ndarray,
+) -> list[ImposedStep]:
     """Return equal steps, the first in parts that double, because the start of a curve is stiff."""
-    n_steps = max(1, int(np.ceil(abs(programme.displacement) / programme.step - 1e-9)))
-    step = programme.displacement / n_steps
+    n_steps = max(1, int(np.ceil(length / programme.step - 1e-9)))
     parts = 0.5 ** np.arange(programme.first_step_halvings, 0, -1)
     first = [*parts[:1], *parts] if len(parts) else [1.0]
-    return [DisplacementStep(float(share * step)) for share in [*first, *[1.0] * (n_steps - 1)]]
+    step = motion / n_steps
+    return [
+        ImposedStep(mode, share * step, load, load) for share in [*first, *[1.0] * (n_steps - 1)]
+    ]

@@ -9,33 +9,117 @@ from annotated_types import Ge, Gt, Le, MinLen
 
 from install_mpm.conventions import Unit
 
+Name = Annotated[str, MinLen(1)]
+Halvings = Annotated[int, Ge(0), Le(10)]
+
 
 @dataclass(frozen=True)
 class Release:
-    """Take the load off the pile's head in equal steps, force-controlled."""
+    """Take the loads off the pile's head in equal steps, force-controlled."""
 
-    name: Annotated[str, MinLen(1)] = "release"
+    name: Name = "release"
     steps: Annotated[int, Ge(1)] = 5
     kind: Literal["release"] = "release"
 
 
 @dataclass(frozen=True)
 class Displace:
-    """Move the pile along its axis in equal steps; ``displacement`` is positive downward."""
+    """Move the pile along its axis in equal steps, guided; positive ``displacement`` is downward."""
 
-    name: Annotated[str, MinLen(1)]
+    name: Name
     displacement: Annotated[float, Unit("m")]
     step: Annotated[float, Unit("m"), Gt(0)]
     """Largest length of a step."""
-    start: Literal["released", "equilibrated"] = "released"
-    """Start from the end of the release, or from the state that was handed over."""
-    first_step_halvings: Annotated[int, Ge(0), Le(10)] = 4
+    start: Name = "released"
+    """Start from the end of the release, from the state that was handed over ("equilibrated"), or
+    from the end of the programme of this name.
+    """
+    first_step_halvings: Halvings = 4
     """The first step is taken in parts: step / 2^4 twice, step / 2^3, ..., step / 2."""
     kind: Literal["displace"] = "displace"
 
 
-Programme = Release | Displace
+@dataclass(frozen=True)
+class Lateral:
+    """Move a point of the axis sideways, in space; all other loads on the pile stay as they are."""
+
+    name: Name
+    displacement: Annotated[float, Unit("m")]
+    step: Annotated[float, Unit("m"), Gt(0)]
+    height: Annotated[float, Unit("m")] = 0.0
+    """Of the point of load above the ground."""
+    direction: Annotated[float, Unit("rad")] = 0.0
+    """Of the displacement, from the x axis towards the y axis."""
+    head: Literal["free", "fixed"] = "free"
+    """Whether the head can rotate."""
+    start: Name = "released"
+    first_step_halvings: Halvings = 4
+    kind: Literal["lateral"] = "lateral"
+
+
+@dataclass(frozen=True)
+class Rotate:
+    """Turn the pile, in space: by torsion about its axis, or by a moment about a horizontal one."""
+
+    name: Name
+    rotation: Annotated[float, Unit("rad")]
+    """Right-handed about the axis, which points up, or about the horizontal one, at 90 degrees from
+    the direction: a positive moment tilts the head in the direction.
+    """
+    step: Annotated[float, Unit("rad"), Gt(0)]
+    about: Literal["axis", "horizontal"] = "axis"
+    advance: Annotated[float | None, Unit("m")] = None
+    """Of the pile in a whole torsion, positive downward; by default its vertical load stays."""
+    direction: Annotated[float, Unit("rad")] = 0.0
+    start: Name = "released"
+    first_step_halvings: Halvings = 4
+    kind: Literal["rotate"] = "rotate"
+
+
+@dataclass(frozen=True)
+class Load:
+    """Bring all loads of the pile in space to given values together, force-controlled."""
+
+    name: Name
+    vertical: Annotated[float, Unit("N")] = 0.0
+    """Positive downward."""
+    lateral: Annotated[float, Unit("N")] = 0.0
+    moment: Annotated[float, Unit("N m")] = 0.0
+    """Besides that of the lateral load about the ground surface; positive tilts the same way."""
+    torque: Annotated[float, Unit("N m")] = 0.0
+    """Right-handed about the axis, which points up."""
+    height: Annotated[float, Unit("m")] = 0.0
+    """Of the point of load above the ground."""
+    direction: Annotated[float, Unit("rad")] = 0.0
+    steps: Annotated[int, Ge(1)] = 10
+    start: Name = "released"
+    kind: Literal["load"] = "load"
+
+
+@dataclass(frozen=True)
+class Cycles:
+    """Cycles of one load of a pile in space, force-controlled; all other loads stay as they are."""
+
+    name: Name
+    component: Literal["vertical", "lateral", "moment", "torque"]
+    amplitude: Annotated[float, Unit("N"), Gt(0)]
+    """In N, or in N m of a moment or a torque."""
+    cycles: Annotated[int, Ge(1)]
+    mean: Annotated[float, Unit("N")] = 0.0
+    """Zero: two-way; the amplitude: one-way."""
+    steps: Annotated[int, Ge(1)] = 4
+    """From the mean to the amplitude; twice as many from peak to peak."""
+    height: Annotated[float, Unit("m")] = 0.0
+    direction: Annotated[float, Unit("rad")] = 0.0
+    start: Name = "released"
+    kind: Literal["cycles"] = "cycles"
+
+
+Programme = Release | Displace | Lateral | Rotate | Load | Cycles
 """Every programme a case can name; ``kind`` tells them apart."""
+
+IN_THE_PLANE = (Release, Displace)
+"""Programmes of a wall and of a pile of revolution; a pile in space takes them all."""
 
 
 @dataclass(frozen=True)

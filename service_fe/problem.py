@@ -23,22 +23,26 @@ from install_mpm.ground import (
     unit_weights,
 )
 from install_mpm.pile import WHOLE_PILE
-from service_fe.interface_forms import InterfaceForms
-from service_fe.kinematics import soil_forms
+from service_fe.interface_forms import InterfaceForms, NormalsOf, flat_normals
+from service_fe.kinematics import FORMS
 from service_fe.linear_solver import TangentSolver
 from service_fe.load_step import LoadStep, Model, Step, Unknowns
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
-from service_fe.rigid_pile import PileControl, held
+from service_fe.rigid_pile import PileControl, axial, held
 
 
 def roller_supports(mesh: FEMesh) -> np.ndarray:
-    """Return where the box holds the soil, (node, 2) bool: rollers at the sides, fixed bottom."""
-    is_fixed = np.zeros((len(mesh.nodes), 2), dtype=bool)
+    """Return where the box holds the soil, (node, dim) bool: rollers at the sides, fixed bottom.
+
+    The side of a box in space holds both horizontal displacements.
+    """
+    is_fixed = np.zeros(mesh.nodes.shape, dtype=bool)
+    every_axis = list(range(mesh.nodes.shape[1]))
     for tag, axes in {
         FacetTag.SYMMETRY: [0],
-        FacetTag.SIDE: [0],
-        FacetTag.BOTTOM: [0, 1],
+        FacetTag.SIDE: every_axis[:-1],
+        FacetTag.BOTTOM: every_axis,
     }.items():
         nodes = np.unique(mesh.facet_nodes[mesh.facet_tag == tag])
         is_fixed[np.ix_(nodes, axes)] = True
@@ -46,7 +50,7 @@ def roller_supports(mesh: FEMesh) -> np.ndarray:
 
 
 class ServiceProblem:
-    """Soil, interface and rigid pile: the modelled half per metre run, or a body of revolution.
+    """Soil, interface and rigid pile: half of a wall per metre run, a body of revolution, or all.
 
     Parameters
     ----------
@@ -61,15 +65,17 @@ class ServiceProblem:
     numerics
         Tolerance and limits of Newton's method.
     is_fixed
-        Supports (node, 2) bool; the default is ``roller_supports``.
+        Supports (node, dim) bool; the default is ``roller_supports``.
     kinematics
-        Plane strain or axisymmetric.  In axisymmetry all forces, areas and volumes are those of the
-        whole body, and the pile may move along its axis only.
+        In axisymmetry and in space all forces, areas and volumes are those of the whole body; in
+        axisymmetry the pile may move along its axis only.
+    normals
+        Exact normals of the pile; by default those of a flat-ended one.
 
     Raises
     ------
     ValueError
-        If the mesh cannot be used, or ``kinematics`` is three-dimensional.
+        If the mesh cannot be used.
     """
 
     def __init__(
@@ -81,13 +87,15 @@ class ServiceProblem:
         numerics: ServiceNumerics | None = None,
         is_fixed: np.ndarray | None = None,
         kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+        normals: NormalsOf = flat_normals,
     ) -> None:
-        self._soil = soil_forms(mesh, kinematics)
+        self._soil = FORMS[kinematics](mesh)
         self.mesh, self.ground = mesh, ground
         self.numerics = numerics or ServiceNumerics()
+        self.dim = mesh.nodes.shape[1]
         self.whole_body = WHOLE_PILE[kinematics]
-        self._interface = InterfaceForms(mesh, kinematics)
-        strength = undrained_shear_strength(ground, self._interface.positions[:, 1])
+        self._interface = InterfaceForms(mesh, kinematics, normals)
+        strength = undrained_shear_strength(ground, self._interface.positions[:, -1])
         self.model = Model(
             soil=self._soil,
             interface=self._interface,
@@ -95,13 +103,13 @@ class ServiceProblem:
             materials=dispatch.pack(soils_of(ground)),
             interface_parameters=coulomb_interface.pack(interface, strength),
             is_fixed=roller_supports(mesh) if is_fixed is None else is_fixed,
-            pile_weight=np.array([0.0, -pile_weight, 0.0]),
+            pile_weight=-pile_weight * axial(self.dim),
             numerics=self.numerics,
         )
 
     @property
     def integration_positions(self) -> np.ndarray:
-        """Positions (n_q, 2) in m of the integration points, three to a cell, cell by cell."""
+        """Positions (n_q, dim) in m of the integration points, cell by cell."""
         return self._soil.integration_positions
 
     @property
@@ -111,7 +119,7 @@ class ServiceProblem:
 
     @property
     def interface_positions(self) -> np.ndarray:
-        """Positions (n_i, 2) in m of the interface's integration points, three to a pile facet."""
+        """Positions (n_i, dim) in m of the interface's integration points, facet by facet."""
         return self._interface.positions
 
     @property
@@ -121,12 +129,17 @@ class ServiceProblem:
 
     @property
     def interface_normals(self) -> np.ndarray:
-        """Exact unit normals (n_i, 2) from soil to pile."""
+        """Exact unit normals (n_i, dim) from soil to pile."""
         return self._interface.normals
 
     @property
+    def interface_facet_normals(self) -> np.ndarray:
+        """Unit normals (n_i, dim) of the facets on which the interface points lie."""
+        return self._interface.facet_normals
+
+    @property
     def interface_parts(self) -> np.ndarray:
-        """``PilePart`` (n_i,) int64 of each interface point."""
+        """Part of the pile (n_i,) int64 of each interface point."""
         return self._interface.parts
 
     def wished_in_place_state(self) -> FEState:
@@ -136,19 +149,20 @@ class ServiceProblem:
             self.integration_positions,
             self.interface_positions,
             self.interface_normals,
+            self.interface_facet_normals,
         )
 
     def pile_load(self, state: FEState) -> np.ndarray:
-        """Return the load (3,) in N, N, N m that holds the pile against soil and weight."""
+        """Return the load (n_motions,) in N and N m that holds the pile against soil and weight."""
         _, pile_force = self._interface.forces(state.interface_traction)
         return pile_force - self.model.pile_weight
 
     def gravity(self, state: FEState) -> np.ndarray:
-        """Return the nodal forces (node, 2) in N of the weight of the soils of ``state``."""
+        """Return the nodal forces (node, dim) in N of the weight of the soils of ``state``."""
         return self._soil.weight(unit_weights(self.ground)[state.material])
 
     def internal_force(self, state: FEState) -> np.ndarray:
-        """Return the nodal forces (node, 2) in N of stress and interface traction of ``state``."""
+        """Return the nodal forces (node, dim) in N of stress and interface of ``state``."""
         soil_force, _ = self._interface.forces(state.interface_traction)
         return self._soil.internal_force(six_vectors(state.cauchy_stress)) + soil_force
 
@@ -180,7 +194,7 @@ class ServiceProblem:
         gravity = self.gravity(state)
         external = gravity - (1.0 - share) * (gravity - self.internal_force(state))
         try:
-            step = self.solve(state, held(), external_force=external)
+            step = self.solve(state, held(self.dim), external_force=external)
         except StepNotConvergedError as error:
             raise EquilibrationError(
                 f"releasing {share:.0%} of the out-of-balance force failed: {error};"
@@ -207,9 +221,9 @@ class ServiceProblem:
         control
             Motion or load of the pile.
         support_motion
-            Increments (node, 2) in m at the supports, used where fixed; default zero.
+            Increments (node, dim) in m at the supports, used where fixed; default zero.
         external_force
-            Nodal forces (node, 2) in N at the end of the step; default gravity.
+            Nodal forces (node, dim) in N at the end of the step; default gravity.
         guess
             First guess of the increments, such as those of the step before; its prescribed part is
             replaced.

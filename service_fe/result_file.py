@@ -14,11 +14,11 @@ from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEStat
 from install_mpm.record import StateFileError, read_record, write_record
 from install_mpm.seal import new_state_file, open_state_file
 from install_mpm.state_file import read_header, write_header
-from service_fe.options import Displace, Programme, Release
+from service_fe.options import Cycles, Displace, Lateral, Load, Programme, Release, Rotate
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
 
 FORMAT = "screwpile-service-result"
-VERSION = 2
+VERSION = 3
 
 RECORDS = {"mesh": FEMesh, "integration": FEIntegrationPoints, "interface": FEInterfacePoints}
 """Groups of the file that all programmes share."""
@@ -26,7 +26,9 @@ RECORDS = {"mesh": FEMesh, "integration": FEIntegrationPoints, "interface": FEIn
 PROGRAMME_RECORDS = {"curve": Curve, "soil": Displacement, "state": FEState}
 """Groups below ``/programmes/<number>``."""
 
-_PROGRAMME_OF_KIND = {"release": Release, "displace": Displace}
+_PROGRAMME_OF_KIND: dict[str, type[Programme]] = {
+    kind.kind: kind for kind in (Release, Displace, Lateral, Rotate, Load, Cycles)
+}
 _REMEDY = "run the service stage again"
 
 

@@ -1,7 +1,9 @@
 """Load-displacement curves of the pile in service, and the figures that are read from them.
 
-Displacement and load are at the pile's head, positive downward, for the whole pile and per metre
-run; the displacement counts from the start of the programme.  Uplift has both negative.
+Displacement and load are at the pile's head, for the whole pile and of a wall per metre run; the
+displacement counts from the start of the programme.  They are positive downward, so uplift has both
+negative; of a lateral load they are positive in its direction, and of a rotation they are angle and
+moment.
 """
 
 from __future__ import annotations
@@ -35,10 +37,12 @@ class Curve(NamedTuple):
     """Curve of a programme: the first row is its start, then one row per step; whole pile."""
 
     displacement: Annotated[
-        np.ndarray, _per_step("m", "displacement of the head, positive downward")
+        np.ndarray,
+        _per_step("m or rad", "displacement of the head, positive downward, or rotation"),
     ]
     head_load: Annotated[
-        np.ndarray, _per_step("N", "load of the structure on the head, positive downward")
+        np.ndarray,
+        _per_step("N or N m", "load of the structure on the head, positive downward, or moment"),
     ]
     iterations: Annotated[
         np.ndarray, _per_step("", "Newton iterations of the accepted parts of the step", "int64")
@@ -59,13 +63,21 @@ class Curve(NamedTuple):
             may_be_nan=True,
         ),
     ]
+    motion: Annotated[
+        np.ndarray,
+        Field(("load_step", "motion"), "m or rad", "motion of the axis at the ground surface"),
+    ]
+    load: Annotated[
+        np.ndarray,
+        Field(("load_step", "motion"), "N or N m", "load on the pile there, besides its weight"),
+    ]
 
 
 class Displacement(NamedTuple):
     """Displacement of the soil in a programme."""
 
     displacement: Annotated[
-        np.ndarray, Field(("node", 2), "m", "displacement (x, z) since the programme's start")
+        np.ndarray, Field(("node", "dim"), "m", "displacement since the programme's start")
     ]
 
 

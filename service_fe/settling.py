@@ -52,7 +52,7 @@ def settle(
     StepNotConvergedError
         If it does not come to rest.
     """
-    total = Unknowns(np.zeros_like(problem.mesh.nodes), np.zeros(3))
+    total = Unknowns(np.zeros_like(problem.mesh.nodes), np.zeros_like(control.motion))
     now, iterations, parts = damping, 0, 0
     for _ in range(MAX_PARTS):
         try:
@@ -67,6 +67,6 @@ def settle(
         if now == 0.0:
             return Settled(step, total, iterations, parts)
         parts += 1
-        control = control._replace(motion=np.zeros(3))  # it has been made
+        control = control._replace(motion=np.zeros_like(control.motion))  # it has been made
         now = LESS * now if now > SMALLEST * damping else 0.0
     raise StepNotConvergedError(f"the soil is not at rest after {MAX_PARTS} damped parts", ())

@@ -1,9 +1,9 @@
-"""The soil as quadratic triangles in dolfinx: strain, nodal forces and stiffness.
+"""The soil as quadratic triangles or tetrahedra in dolfinx: strain, nodal forces and stiffness.
 
-Everything outside this module is in the order of the ``FEMesh``: nodal arrays are (node, 2),
+Everything outside this module is in the order of the ``FEMesh``: nodal arrays are (node, dim),
 integration points run over its cells and, within a cell, over the points of the rule.  dolfinx
-renumbers both; the maps are made here once.  Only the three in-plane components xx, yy, xy of the
-six-vectors enter the forms, because the out-of-plane strain is zero.
+renumbers both; the maps are made here once.  In plane strain only the three in-plane components xx,
+yy, xy of the six-vectors enter the forms, because the out-of-plane strain is zero.
 """
 
 from __future__ import annotations
@@ -17,26 +17,31 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from handoff.fe_mesh import FEMesh
+from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
 from service_fe import compat
 
 DEGREE = 2
-"""Integration is exact for quadratic polynomials: three points in a triangle."""
+"""Exact for quadratic polynomials: three points in a triangle, four in a tetrahedron."""
 
-IN_PLANE = np.array([0, 1, 3])
-"""Components xx, yy, xy of a Mandel six-vector; axis 1 is the vertical."""
+COMPONENTS = {2: np.array([0, 1, 3]), 3: np.arange(6)}
+"""Components of a Mandel six-vector (xx, yy, zz, xy, xz, yz) by dimension; in 2D yy is vertical."""
 
-BASIX_ORDER = np.array([0, 1, 2, 4, 5, 3])
-"""Nodes of an ``FEMesh`` cell (mid-sides 01, 12, 20) as basix orders them (12, 02, 01)."""
+BASIX_ORDER = {
+    2: np.array([0, 1, 2, 4, 5, 3]),
+    3: np.array([0, 1, 2, 3, 8, 9, 5, 7, 6, 4]),
+}
+"""Nodes of an ``FEMesh`` cell as basix orders them: the mid-side of the last edge comes first."""
 
 
-def in_plane_strain(displacement: Any) -> Any:
-    """Return the UFL vector (xx, yy, xy) of the small strain, Mandel scaling."""
+def strain_vector(displacement: Any) -> Any:
+    """Return the UFL vector of the ``COMPONENTS`` of the small strain, Mandel scaling."""
     strain = ufl.sym(ufl.grad(displacement))
-    return ufl.as_vector([strain[0, 0], strain[1, 1], np.sqrt(2.0) * strain[0, 1]])
+    dim = strain.ufl_shape[0]
+    return ufl.as_vector([SCALE[k] * strain[int(ROW[k]), int(COLUMN[k])] for k in COMPONENTS[dim]])
 
 
 class SoilForms:
-    """Discrete soil on a mesh of six-node triangles.
+    """Discrete soil on a mesh of six-node triangles or ten-node tetrahedra.
 
     Raises
     ------
@@ -49,11 +54,14 @@ class SoilForms:
         if MPI.COMM_WORLD.size > 1:
             raise ValueError("the service stage runs on one rank; start it without mpirun")
         self.mesh = mesh
-        self.n_dofs = 2 * len(mesh.nodes)
-        vertices, triangles = np.unique(mesh.cell_nodes[:, :3], return_inverse=True)
-        triangles = triangles.reshape(-1, 3)
+        self.dim = mesh.nodes.shape[1]
+        self.n_dofs = mesh.nodes.size
+        self._components = COMPONENTS[self.dim]
+        vertices, cell_vertices = np.unique(mesh.cell_nodes[:, : self.dim + 1], return_inverse=True)
         with compat.quiet_compiler():
-            self.domain = compat.make_triangle_mesh(mesh.nodes[vertices], triangles)
+            self.domain = compat.make_simplex_mesh(
+                mesh.nodes[vertices], cell_vertices.reshape(-1, self.dim + 1)
+            )
             cells = self.domain.topology.original_cell_index
             self.original_cell = np.asarray(cells, dtype=np.int64)
             self.space = compat.make_displacement_space(self.domain)
@@ -61,42 +69,47 @@ class SoilForms:
             self._make_forms()
 
     def _row_of_dof(self) -> np.ndarray:
-        """Return the matrix row (n_dofs,) of each displacement 2 * node + axis."""
+        """Return the matrix row (n_dofs,) of each displacement dim * node + axis."""
         blocks = compat.cell_blocks(self.space, len(self.original_cell))
         node_block = np.full(len(self.mesh.nodes), -1)
-        node_block[self.mesh.cell_nodes[self.original_cell][:, BASIX_ORDER]] = blocks
+        node_block[self.mesh.cell_nodes[self.original_cell][:, BASIX_ORDER[self.dim]]] = blocks
         if (node_block < 0).any():
             raise ValueError("the mesh has nodes that belong to no cell; remove them")
-        place = self.space.tabulate_dof_coordinates()[node_block, :2]
+        place = self.space.tabulate_dof_coordinates()[node_block, : self.dim]
         if np.abs(place - self.mesh.nodes).max() > 1e-9 * np.ptp(self.mesh.nodes):
             raise ValueError("a mid-side node is not in the middle of a straight edge of the mesh")
-        return (2 * node_block[:, None] + np.arange(2)).ravel()
+        return (self.dim * node_block[:, None] + np.arange(self.dim)).ravel()
 
     def _make_forms(self) -> None:
-        points, weights = compat.quadrature_rule(DEGREE)
-        corners = self.mesh.nodes[self.mesh.cell_nodes[:, :3]]
+        points, weights = compat.quadrature_rule(DEGREE, self.dim)
+        corners = self.mesh.nodes[self.mesh.cell_nodes[:, : self.dim + 1]]
         edges = corners[:, 1:] - corners[:, :1]
         self.integration_positions = (
             corners[:, None, 0] + np.einsum("qr,cri->cqi", points, edges)
-        ).reshape(-1, 2)
+        ).reshape(-1, self.dim)
         self.integration_volumes = np.outer(np.abs(np.linalg.det(edges)), weights).ravel()
 
+        n_components = len(self._components)
         dx = compat.make_measure(self.domain, DEGREE)
         test, trial = ufl.TestFunction(self.space), ufl.TrialFunction(self.space)
         self._displacement = fem.Function(self.space)
-        self._stress = fem.Function(compat.make_quadrature_space(self.domain, (3,), DEGREE))
-        self._tangent = fem.Function(compat.make_quadrature_space(self.domain, (3, 3), DEGREE))
+        self._stress = fem.Function(
+            compat.make_quadrature_space(self.domain, (n_components,), DEGREE)
+        )
+        self._tangent = fem.Function(
+            compat.make_quadrature_space(self.domain, (n_components, n_components), DEGREE)
+        )
         self._unit_weight = fem.Function(compat.make_quadrature_space(self.domain, (), DEGREE))
         self._unit_weight_rows = self._quadrature_rows(self._unit_weight)
         self._stress_rows = self._quadrature_rows(self._stress)
         self._tangent_rows = self._quadrature_rows(self._tangent)
-        strain = in_plane_strain(self._displacement)
+        strain = strain_vector(self._displacement)
         self._strain = fem.Expression(strain, points)
-        self._force_form = fem.form(ufl.dot(self._stress, in_plane_strain(test)) * dx)
+        self._force_form = fem.form(ufl.dot(self._stress, strain_vector(test)) * dx)
         self._stiffness_form = fem.form(
-            ufl.dot(in_plane_strain(test), ufl.dot(self._tangent, in_plane_strain(trial))) * dx
+            ufl.dot(strain_vector(test), ufl.dot(self._tangent, strain_vector(trial))) * dx
         )
-        self._weight_form = fem.form(self._unit_weight * test[1] * dx)
+        self._weight_form = fem.form(self._unit_weight * test[self.dim - 1] * dx)
         self.matrix: PETSc.Mat = compat.make_matrix(self._stiffness_form)
 
     def _quadrature_rows(self, function: Any) -> np.ndarray:
@@ -107,22 +120,23 @@ class SoilForms:
         return rows.ravel()
 
     def strain(self, displacement: np.ndarray) -> np.ndarray:
-        """Return the strain (n_q, 6), Mandel, of nodal displacements (node, 2) in m."""
+        """Return the strain (n_q, 6), Mandel, of nodal displacements (node, dim) in m."""
         self._displacement.x.array[self.row_of_dof] = displacement.ravel()
         by_cell = compat.evaluate(self._strain, self.domain, len(self.original_cell))
         in_order = np.empty_like(by_cell)
         in_order[self.original_cell] = by_cell
         strain = np.zeros((len(self.integration_volumes), 6))
-        strain[:, IN_PLANE] = in_order.reshape(-1, 3)
+        strain[:, self._components] = in_order.reshape(len(strain), -1)
         return strain
 
     def internal_force(self, stress: np.ndarray) -> np.ndarray:
-        """Return the nodal forces (node, 2) in N of the Mandel stress (n_q, 6) in Pa."""
-        self._stress.x.array.reshape(-1, 3)[self._stress_rows] = stress[:, IN_PLANE]
+        """Return the nodal forces (node, dim) in N of the Mandel stress (n_q, 6) in Pa."""
+        values = stress[:, self._components]
+        self._stress.x.array.reshape(-1, values.shape[1])[self._stress_rows] = values
         return self._assembled(self._force_form)
 
     def weight(self, unit_weight: np.ndarray) -> np.ndarray:
-        """Return the nodal forces (node, 2) in N of gravity, ``unit_weight`` (n_q,) in N/m^3."""
+        """Return the nodal forces (node, dim) in N of gravity, ``unit_weight`` (n_q,) in N/m^3."""
         self._unit_weight.x.array[self._unit_weight_rows] = unit_weight
         return -self._assembled(self._weight_form)
 
@@ -131,10 +145,10 @@ class SoilForms:
 
         The same matrix is filled at each call.
         """
-        values = tangent[:, IN_PLANE[:, None], IN_PLANE].reshape(-1, 9)
-        self._tangent.x.array.reshape(-1, 9)[self._tangent_rows] = values
+        values = tangent[:, self._components[:, None], self._components].reshape(len(tangent), -1)
+        self._tangent.x.array.reshape(-1, values.shape[1])[self._tangent_rows] = values
         compat.assemble_into_matrix(self.matrix, self._stiffness_form)
         return self.matrix
 
     def _assembled(self, form: Any) -> np.ndarray:
-        return compat.assemble_into_array(form, self.n_dofs)[self.row_of_dof].reshape(-1, 2)
+        return compat.assemble_into_array(form, self.n_dofs)[self.row_of_dof].reshape(-1, self.dim)

@@ -13,13 +13,16 @@ import numpy as np
 from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEState
 from install_mpm.newton import convergence_order
 from service_fe.load_step import Step, Unknowns
-from service_fe.loading import ImposedStep, imposed_steps
+from service_fe.loading import ImposedStep, Mode, imposed_steps
 from service_fe.newton import StepNotConvergedError
-from service_fe.options import Programme, Release
+from service_fe.options import Programme, Release, Rotate
 from service_fe.problem import ServiceProblem
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
 from service_fe.rigid_pile import PileControl
 from service_fe.settling import Settled, settle
+
+EQUILIBRATED, RELEASED = "equilibrated", "released"
+"""States that programmes start from: as handed over, and at the end of the last release."""
 
 
 class ServiceError(RuntimeError):
@@ -70,7 +73,8 @@ def run(
     state
         Equilibrated state: handed over, or ``problem.wished_in_place_state()``.
     programmes
-        Programmes in order; "released" is the end of the release before them.
+        Programmes in order; "released" is the end of the release before them, and a programme may
+        start from the end of any before it.
     observe
         Called after each step.
     model, case_text
@@ -83,14 +87,14 @@ def run(
         step does not converge after ``max_cuts`` halvings.
     """
     check_programmes(programmes)
-    starts = {"equilibrated": state}
+    starts = {EQUILIBRATED: state}
     results = []
     for programme in programmes:
+        start = EQUILIBRATED if isinstance(programme, Release) else programme.start
+        results.append(run_programme(problem, starts[start], programme, observe))
+        starts[programme.name] = results[-1].state
         if isinstance(programme, Release):
-            results.append(run_programme(problem, state, programme, observe))
-            starts["released"] = results[-1].state
-        else:
-            results.append(run_programme(problem, starts[programme.start], programme, observe))
+            starts[RELEASED] = results[-1].state
     return ServiceResult(
         model=model,
         mesh=problem.mesh,
@@ -112,24 +116,36 @@ def check_programmes(programmes: Sequence[Programme]) -> None:
     Raises
     ------
     ServiceError
-        If two programmes have one name, or one moves nothing or starts from a release that is not
-        before it.
+        If two programmes have one name, or one moves nothing or starts from what is not before it.
     """
     names = [programme.name for programme in programmes]
     for name in names:
         if names.count(name) > 1:
             raise ServiceError(f"two programmes are called {name!r}; give each its own name")
-    is_released = False
+    known = {EQUILIBRATED}
     for programme in programmes:
+        known.add(programme.name)
         if isinstance(programme, Release):
-            is_released = True
-        elif programme.displacement == 0.0:
+            known.add(RELEASED)
+            continue
+        if _moves_nothing(programme):
             raise ServiceError(f"programme {programme.name!r} has no displacement; give it one")
-        elif programme.start == "released" and not is_released:
+        if programme.start == RELEASED and RELEASED not in known:
             raise ServiceError(
                 f"programme {programme.name!r} starts from the released pile; put a programme of"
                 ' kind "release" before it, or let it start from "equilibrated"'
             )
+        if programme.start not in known - {programme.name}:
+            raise ServiceError(
+                f"programme {programme.name!r} starts from {programme.start!r}, which is not before"
+                f" it; use one of {', '.join(sorted(known - {programme.name}))}"
+            )
+
+
+def _moves_nothing(programme: Programme) -> bool:
+    return getattr(programme, "displacement", 1.0) == 0.0 or (
+        isinstance(programme, Rotate) and programme.rotation == 0.0
+    )
 
 
 def run_programme(
@@ -145,9 +161,9 @@ def run_programme(
     ServiceError
         If a step does not converge.
     """
-    head_load = -float(problem.pile_load(state)[1])
-    steps = imposed_steps(programme, head_load)
-    rows = [_Row(0.0, problem.whole_body * head_load, 0, 0, 0, ())]
+    load = problem.pile_load(state)
+    steps = imposed_steps(programme, load)
+    rows = [_first_row(problem, steps[0].mode, load)]
     displacement = np.zeros_like(problem.mesh.nodes)
     guess, size = None, 0.0
     for number, imposed in enumerate(steps, start=1):
@@ -162,7 +178,7 @@ def run_programme(
         state, size = taken.last.state, imposed.size
         guess = None if taken.settled else taken.increment
         displacement += taken.increment.displacement
-        rows.append(_row(rows[-1].displacement, problem.whole_body, taken))
+        rows.append(_row(problem, rows[-1], imposed.mode, taken))
         observe(ServiceProgress(programme.name, number, len(steps), *rows[-1][:4]))
     return ProgrammeResult(programme, _curve(rows), Displacement(displacement), state)
 
@@ -182,7 +198,7 @@ def advance(
         If a part of 1 / 2^max_cuts of the step does not converge.
     """
     done, share, cuts, iterations, settled = 0.0, 1.0, 0, 0, 0
-    total = Unknowns(np.zeros_like(problem.mesh.nodes), np.zeros(3))
+    total = Unknowns(np.zeros_like(problem.mesh.nodes), np.zeros_like(imposed.motion))
     part = None
     while done < 1.0:
         try:
@@ -225,16 +241,28 @@ class _Row(NamedTuple):
     cuts: int
     settled: int
     residuals: tuple[float, ...]
+    motion: np.ndarray
+    load: np.ndarray
 
 
-def _row(displacement: float, whole_body: float, taken: Advance) -> _Row:
+def _first_row(problem: ServiceProblem, mode: Mode, load: np.ndarray) -> _Row:
+    whole = problem.whole_body * load
+    head_load = float(mode.measure @ (whole @ mode.frame))
+    return _Row(0.0, head_load, 0, 0, 0, (), np.zeros(len(load)), whole)
+
+
+def _row(problem: ServiceProblem, before: _Row, mode: Mode, taken: Advance) -> _Row:
+    moved = taken.increment.motion
+    load = problem.whole_body * taken.last.pile_load
     return _Row(
-        displacement - float(taken.increment.motion[1]),
-        whole_body * taken.last.head_load,
+        before.displacement + float(mode.measure @ np.linalg.solve(mode.frame, moved)),
+        float(mode.measure @ (load @ mode.frame)) + 0.0,  # no negative zero
         taken.iterations,
         taken.cuts,
         taken.settled,
         taken.last.residuals,
+        before.motion + moved,
+        load,
     )
 
 
@@ -252,4 +280,6 @@ def _curve(rows: Sequence[_Row]) -> Curve:
         cuts=np.array([row.cuts for row in rows], dtype=np.int64),
         settled=np.array([row.settled for row in rows], dtype=np.int64),
         residual_history=history,
+        motion=np.array([row.motion for row in rows]),
+        load=np.array([row.load for row in rows]),
     )

@@ -11,7 +11,6 @@ from install_mpm.ground import Ground
 from install_mpm.newton import convergence_order
 from service_fe.axisymmetric_forms import AxisymmetricForms
 from service_fe.interface_forms import InterfaceForms
-from service_fe.kinematics import soil_forms
 from service_fe.load_step import LoadStep, Unknowns
 from service_fe.options import Release
 from service_fe.problem import ServiceProblem
@@ -204,11 +203,6 @@ def test_thick_cylinder_converges_to_lame(make_structured_mesh):
     rates = np.log2(errors[:-1] / errors[1:])
     assert rates[-1] > 2.8
     assert errors[-1] < 1e-5
-
-
-def test_three_dimensions_are_refused(box_mesh):
-    with pytest.raises(ValueError, match="use PLANE_STRAIN or AXISYMMETRIC"):
-        soil_forms(box_mesh, Kinematics.THREE_D)
 
 
 def test_unusable_meshes_are_refused(box_mesh):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from service_fe.loading import DisplacementStep
+from service_fe.loading import imposed_steps
 from service_fe.newton import StepNotConvergedError
-from service_fe.options import ServiceNumerics
+from service_fe.options import Displace, ServiceNumerics
 from service_fe.rigid_pile import moved
 from service_fe.settling import settle
 from service_fe.solve import advance
@@ -42,7 +42,7 @@ def test_damping_resists_the_motion(pile_problem, undisturbed):
 
 
 def test_step_that_does_not_converge_is_settled_only_if_asked(make_pile_problem, undisturbed):
-    step = DisplacementStep(PUSH)
+    step = imposed_steps(Displace("push", PUSH, PUSH, first_step_halvings=0), np.zeros(3))[0]
     with pytest.raises(StepNotConvergedError):
         advance(make_pile_problem(ServiceNumerics(max_iterations=5, max_cuts=0)), undisturbed, step)
     patient = ServiceNumerics(max_iterations=5, max_cuts=0, damping=0.1)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from service_fe.loading import DisplacementStep, HeadLoadStep, imposed_steps
+from service_fe.loading import imposed_steps
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import Displace, Release, ServiceNumerics
 from service_fe.rigid_pile import moved
@@ -99,8 +99,14 @@ def test_observer_is_told_each_step(pile_problem, undisturbed):
     assert [item.displacement for item in seen] == pytest.approx([0.005, 0.01, 0.02])
 
 
+def one_push(displacement):
+    """One step downward."""
+    programme = Displace("push", displacement, displacement, first_step_halvings=0)
+    return imposed_steps(programme, np.zeros(3))[0]
+
+
 def test_step_is_cut_until_it_converges(make_pile_problem, undisturbed):
-    whole = DisplacementStep(0.04)
+    whole = one_push(0.04)
     patient = advance(make_pile_problem(), undisturbed, whole)
     hasty = advance(make_pile_problem(ServiceNumerics(max_iterations=4)), undisturbed, whole)
     assert patient.cuts == 0
@@ -112,7 +118,7 @@ def test_step_is_cut_until_it_converges(make_pile_problem, undisturbed):
 def test_step_that_fails_after_all_cuts_is_never_accepted(make_pile_problem, undisturbed):
     problem = make_pile_problem(ServiceNumerics(max_iterations=3, max_cuts=1))
     with pytest.raises(StepNotConvergedError, match="relative residuals"):
-        advance(problem, undisturbed, DisplacementStep(0.3))
+        advance(problem, undisturbed, one_push(0.3))
     with pytest.raises(ServiceError, match=r"'far', step 1 of 1 at 0 m: .*take smaller steps"):
         run_programme(problem, undisturbed, Displace("far", 0.3, 0.3, first_step_halvings=0))
 
@@ -123,6 +129,7 @@ def test_step_that_fails_after_all_cuts_is_never_accepted(make_pile_problem, und
         ([Displace("push", 0.1, 0.01)], 'kind "release" before it'),
         ([Displace("push", 0.0, 0.01, "equilibrated")], "has no displacement"),
         ([Release("one"), Release("one")], "two programmes are called 'one'"),
+        ([Displace("push", 0.1, 0.01, "later")], "starts from 'later', which is not before it"),
     ],
 )
 def test_programmes_that_cannot_run_are_refused(pile_problem, undisturbed, programmes, message):
@@ -136,12 +143,14 @@ def test_unknown_programme_is_named(result):
 
 
 def test_first_step_is_resolved():
-    steps = imposed_steps(Displace("push", 0.1, 0.05, first_step_halvings=3), 0.0)
+    steps = imposed_steps(Displace("push", 0.1, 0.05, first_step_halvings=3), np.zeros(3))
     sizes = [step.size for step in steps]
     assert sizes == pytest.approx([0.00625, 0.00625, 0.0125, 0.025, 0.05])
 
 
 def test_release_steps_go_to_zero():
-    steps = imposed_steps(Release(steps=2), 100.0)
-    assert steps == [HeadLoadStep(100.0, 50.0), HeadLoadStep(50.0, 0.0)]
-    np.testing.assert_allclose(steps[1].control(0.0, 0.5).load, [0.0, -25.0, 0.0])
+    steps = imposed_steps(Release(steps=2), np.array([7.0, -100.0, 3.0]))
+    assert [(step.load_start[1], step.load_end[1]) for step in steps] == [(-100, -50), (-50, 0)]
+    assert [step.size for step in steps] == [-50.0, -50.0]
+    np.testing.assert_array_equal(steps[0].mode.is_loaded, [False, True, False])
+    assert steps[1].control(0.0, 0.5).load[1] == -25.0
