@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from handoff.fe_state_file import FEState
-from handoff.geostatic import VERTICAL, elastic_strain_of
+from handoff.geostatic import elastic_strain_of
 from handoff.tensor_arrays import six_vectors, tensors_of
 from install_mpm.constitutive import coulomb_interface, dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
@@ -114,16 +114,16 @@ def yield_values(ground: GroundProfile, state: FEState) -> np.ndarray:
 def admissible_traction(
     ground: GroundProfile, interface: CoulombInterface, positions: np.ndarray, traction: np.ndarray
 ) -> np.ndarray:
-    """Return the tractions (n, 2) at ``positions`` (n, 2), reduced to the slip limit."""
-    strength = undrained_shear_strength(ground, positions[:, VERTICAL])
-    count = len(traction)
-    returned = np.empty((count, 2))
+    """Return the tractions (n, dim) at ``positions`` (n, dim), reduced to the slip limit."""
+    strength = undrained_shear_strength(ground, positions[:, -1])
+    count, dim = traction.shape
+    returned = np.empty((count, dim))
     coulomb_interface.update_all(
-        np.zeros((count, 2)),
+        np.zeros((count, dim)),
         coulomb_interface.pack(interface, strength),
         np.ascontiguousarray(traction),
         returned,
-        np.empty((count, 2, 2)),
+        np.empty((count, dim, dim)),
         np.empty(count, dtype=np.int64),
     )
     return returned

@@ -31,7 +31,7 @@ class ReleasedState(NamedTuple):
 
     state: FEState
     displacement: np.ndarray
-    """Displacement (node, 2) in m of this release alone."""
+    """Displacement (node, dim) in m of this release alone."""
     iterations: int
     """Newton iterations."""
 
@@ -40,12 +40,12 @@ class EquilibriumProblem(Protocol):
     """A finite-element model with a rigid pile, as the hand-over sees it.
 
     ``service_fe.problem`` satisfies it.  Points keep their order for the life of the object; forces
-    and areas are those of the modelled half.
+    and areas are those of the modelled half of a wall, or of the whole pile.
     """
 
     @property
     def integration_positions(self) -> np.ndarray:
-        """Positions (n_q, 2) in m of the integration points of the soil."""
+        """Positions (n_q, dim) in m of the integration points of the soil."""
 
     @property
     def integration_volumes(self) -> np.ndarray:
@@ -53,7 +53,7 @@ class EquilibriumProblem(Protocol):
 
     @property
     def interface_positions(self) -> np.ndarray:
-        """Positions (n_i, 2) in m of the integration points of the interface."""
+        """Positions (n_i, dim) in m of the integration points of the interface."""
 
     @property
     def interface_areas(self) -> np.ndarray:
@@ -61,11 +61,15 @@ class EquilibriumProblem(Protocol):
 
     @property
     def interface_normals(self) -> np.ndarray:
-        """Exact unit normals (n_i, 2) from soil to pile."""
+        """Exact unit normals (n_i, dim) from soil to pile."""
+
+    @property
+    def interface_facet_normals(self) -> np.ndarray:
+        """Unit normals (n_i, dim) of the facets, which are plane."""
 
     @property
     def interface_parts(self) -> np.ndarray:
-        """``PilePart`` (n_i,) int64 of each interface point."""
+        """Part of the pile (n_i,) int64 of each interface point."""
 
     def out_of_balance(self, state: FEState) -> float:
         """Return |f_ext - f_int(state)| at the free nodes over the weight of the soil, pile held.
@@ -131,7 +135,7 @@ def equilibrate(
         largest_displacement=float(np.linalg.norm(displacement, axis=1).max()),
         iterations=iterations,
     )
-    return balanced._replace(pile_displacement=np.zeros(2)), report
+    return balanced._replace(pile_displacement=np.zeros_like(state.pile_displacement)), report
 
 
 def _released(

@@ -1,4 +1,4 @@
-"""Transfer of interface tractions along the parts of the pile, base by x and shaft by height.
+"""Transfer of interface tractions along the parts of a flat-ended pile, base by x, shaft by height.
 
 What is carried over is the difference from the geostatic traction, by its integral along the part:
 the integral up to a place is interpolated without overshoot, and each target takes its mean over
@@ -8,17 +8,33 @@ out exactly.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from handoff.geostatic import geostatic_traction
-from install_mpm.conventions import Kinematics
 from install_mpm.ground import GroundProfile
-from install_mpm.interface import InterfacePoints
-from install_mpm.pile import WHOLE_PILE, PilePart, surface_normals, tangent_of
+from install_mpm.interface import InterfacePoints, axes_of
+from install_mpm.pile import PilePart, surface_normals
 
 COORDINATE = {PilePart.BASE: 0, PilePart.SHAFT: 1}
 """Axis along which each part runs; both parts begin at its smallest value."""
+
+
+class FESurface(NamedTuple):
+    """Integration points of the interface of a finite-element model."""
+
+    positions: np.ndarray
+    """(n_i, dim) in m."""
+    normals: np.ndarray
+    """Exact unit normals (n_i, dim) from soil to pile."""
+    facet_normals: np.ndarray
+    """Unit normals (n_i, dim) of the facets."""
+    areas: np.ndarray
+    """Integration weights (n_i,) in m^2, of a wall per metre run."""
+    parts: np.ndarray
+    """Part of the pile (n_i,) int64."""
 
 
 def transferred_traction(
@@ -60,22 +76,18 @@ def transferred_traction(
     return traction
 
 
-def pile_forces(
-    traction: np.ndarray,
-    normals: np.ndarray,
-    areas: np.ndarray,
-    parts: np.ndarray,
-    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
-) -> dict[PilePart, float]:
-    """Return the upward soil reaction in N on each part of the *whole* pile.
+def forces_on_pile(
+    traction: np.ndarray, normals: np.ndarray, areas: np.ndarray, positions: np.ndarray
+) -> np.ndarray:
+    """Return the forces (n, dim) in N of the soil on the pile at all points of its surface."""
+    on_soil = np.einsum("nki,nk->ni", axes_of(normals, positions), traction)
+    forces: np.ndarray = -on_soil * areas[:, None]
+    return forces
 
-    Of a wall in plane strain it is per metre run.
-    """
-    upward_on_soil = traction[:, 0] * tangent_of(normals)[:, 1] + traction[:, 1] * normals[:, 1]
-    return {
-        part: -WHOLE_PILE[kinematics] * float((upward_on_soil * areas)[parts == part].sum())
-        for part in PilePart
-    }
+
+def part_forces(forces: np.ndarray, parts: np.ndarray, n_parts: int) -> np.ndarray:
+    """Return the sum (n_parts, dim) in N of ``forces`` (n, dim) on each part of the pile."""
+    return np.stack([np.bincount(parts, force, n_parts) for force in forces.T], axis=1)
 
 
 def _filled(

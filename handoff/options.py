@@ -18,7 +18,9 @@ class HandoffOptions:
     """How the ground is handed over, and which certificate is good enough."""
 
     size_at_pile: Length
-    """Edge length of the finite elements at the pile's corner; twice that along base and shaft."""
+    """Edge length of the finite elements at the pile's corner or plates; twice that along base and
+    shaft.
+    """
     size_far: Length
     neighbours: Annotated[int, Ge(6)] = 32
     """Material points in each least-squares fit."""
@@ -27,3 +29,5 @@ class HandoffOptions:
     max_synthetic_error: Share = 0.05
     max_out_of_balance: Annotated[float, Gt(0)] = 1e-8
     max_reaction_change: Share = 0.05
+    max_relaxation: Share = 0.05
+    """Change of the mean pressure within one pile width in the equilibration."""

@@ -11,35 +11,21 @@ import numpy as np
 from handoff.admissible import YieldCorrections, yield_values
 from handoff.equilibration import EquilibrationReport, EquilibriumProblem
 from handoff.fe_state_file import FEState
-from handoff.geostatic import VERTICAL, geostatic_state
-from handoff.interface_transfer import pile_forces
+from handoff.figure import Figure, relative_difference
+from handoff.geostatic import geostatic_state
 from handoff.options import HandoffOptions
-from handoff.state_transfer import FALLBACK_FROM, StateMap
-from handoff.synthetic import relative_norm, synthetic_errors
+from handoff.pile_figures import reaction_figures, relaxation_figures
+from handoff.placed_pile import PlacedPile
+from handoff.state_transfer import FALLBACK_FROM, StateMap, map_errors
+from handoff.tensor_arrays import relative_norm
 from install_mpm.conventions import GRAVITY
 from install_mpm.ground import GroundProfile, unit_weights
 from install_mpm.material_points import cauchy_stress
-from install_mpm.pile import WHOLE_PILE, Pile, PilePart
 from install_mpm.state_file import InstalledState
 
 MAX_FALLBACK_SHARE = 0.01
 MAX_VOLUME_DIFFERENCE = 0.005
 MAX_YIELD_VIOLATION = 1e-6
-
-
-@dataclass(frozen=True)
-class Figure:
-    """One number of the certificate; it keeps its limit if it is not larger."""
-
-    value: float
-    unit: str
-    meaning: str
-    limit: float | None = None
-
-    @property
-    def is_met(self) -> bool:
-        """Whether the limit is kept; a figure without limit is for information."""
-        return self.limit is None or bool(self.value <= self.limit)
 
 
 @dataclass(frozen=True)
@@ -77,7 +63,7 @@ class Evidence(NamedTuple):
 
     installed: InstalledState
     ground: GroundProfile
-    pile: Pile
+    placed: PlacedPile
     problem: EquilibriumProblem
     options: HandoffOptions
     state_map: StateMap
@@ -91,6 +77,8 @@ class Evidence(NamedTuple):
 
 def certify(evidence: Evidence) -> Certificate:
     """Return the certificate of a hand-over."""
+    pile = (evidence.installed, evidence.placed, evidence.problem)
+    states = (evidence.transferred, evidence.balanced)
     return Certificate(
         {
             **_synthetic_figures(evidence),
@@ -98,29 +86,29 @@ def certify(evidence: Evidence) -> Certificate:
             **_nearest_figure(evidence),
             **_yield_figures(evidence),
             **_equilibrium_figures(evidence),
-            **_reaction_figures(evidence),
+            **reaction_figures(*pile, states, evidence.options),
+            **relaxation_figures(*pile[1:], states, evidence.options),
             **_volume_figures(evidence),
         }
     )
 
 
 def _synthetic_figures(evidence: Evidence) -> dict[str, Figure]:
-    everywhere, near = synthetic_errors(
-        evidence.ground,
-        evidence.pile,
-        float(evidence.installed.pile.tip_depth),
+    placed, ground = evidence.placed, evidence.ground
+    targets = evidence.problem.integration_positions
+    everywhere, near = map_errors(
+        placed.synthetic_stress(ground, evidence.installed.material_points.position),
+        placed.synthetic_stress(ground, targets),
         evidence.state_map,
-        evidence.installed.material_points.position,
-        evidence.problem.integration_positions,
         evidence.problem.integration_volumes,
-        evidence.installed.kinematics,
+        placed.distance(targets) <= placed.near,
     )
     what = "relative L2 error of a synthetic equilibrated field sampled at the material points"
     limit = evidence.options.max_synthetic_error
     return {
         "synthetic_error": Figure(everywhere, "", what, limit),
         "synthetic_error_near_pile": Figure(
-            near, "", f"{what}, within one pile width of the pile", limit
+            near, "", f"{what}, within {placed.near:.3g} m of the pile", limit
         ),
     }
 
@@ -180,6 +168,7 @@ def _equilibrium_figures(evidence: Evidence) -> dict[str, Figure]:
         problem.integration_positions,
         problem.interface_positions,
         problem.interface_normals,
+        problem.interface_facet_normals,
     )
     what = "out-of-balance force over the weight of the soil"
     limit = evidence.options.max_out_of_balance
@@ -200,40 +189,6 @@ def _equilibrium_figures(evidence: Evidence) -> dict[str, Figure]:
     }
 
 
-def _reaction_figures(evidence: Evidence) -> dict[str, Figure]:
-    points, problem = evidence.installed.interface, evidence.problem
-    kinematics = evidence.installed.kinematics
-    geometry = (
-        problem.interface_normals, problem.interface_areas, problem.interface_parts, kinematics
-    )  # fmt: skip
-    covered_area = points.area * points.covered
-    forces = {
-        "mpm": pile_forces(points.traction, points.normal, covered_area, points.part, kinematics),
-        "transferred": pile_forces(evidence.transferred.interface_traction, *geometry),
-        "equilibrated": pile_forces(evidence.balanced.interface_traction, *geometry),
-    }
-    parts = {
-        f"pile_{part.name.lower()}_force_{stage}": Figure(
-            force[part], "N", f"upward soil reaction on the {part.name.lower()}: {stage}"
-        )
-        for stage, force in forces.items()
-        for part in PilePart
-    }
-    before = WHOLE_PILE[kinematics] * float(evidence.installed.pile.reaction[VERTICAL])
-    after = sum(forces["equilibrated"].values())
-    what = "upward soil reaction on the pile"
-    return parts | {
-        "pile_reaction_mpm": Figure(before, "N", f"{what}: mpm"),
-        "pile_reaction_equilibrated": Figure(after, "N", f"{what}: equilibrated"),
-        "pile_reaction_change": Figure(
-            _relative_difference(after, before),
-            "",
-            "pile reaction, finite elements against material points",
-            evidence.options.max_reaction_change,
-        ),
-    }
-
-
 def _volume_figures(evidence: Evidence) -> dict[str, Figure]:
     points = evidence.installed.material_points
     density = unit_weights(evidence.ground)[evidence.balanced.material] / GRAVITY
@@ -247,15 +202,9 @@ def _volume_figures(evidence: Evidence) -> dict[str, Figure]:
         figures[f"{name}_mpm"] = Figure(mpm, unit, f"{name} of the material points")
         figures[f"{name}_fe"] = Figure(fe, unit, f"{name} of the finite elements")
         figures[f"{name}_difference"] = Figure(
-            _relative_difference(fe, mpm),
+            relative_difference(fe, mpm),
             "",
             f"{name}, finite elements against material points",
             MAX_VOLUME_DIFFERENCE,
         )
     return figures
-
-
-def _relative_difference(value: float, reference: float) -> float:
-    """Return |value - reference| over |reference|; zero where both are zero."""
-    difference = abs(value - reference)
-    return difference / abs(reference) if reference else difference

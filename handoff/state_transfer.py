@@ -8,14 +8,15 @@ import numpy as np
 
 from handoff.equilibration import EquilibriumProblem
 from handoff.fe_state_file import FEState
-from handoff.geostatic import VERTICAL, elastic_strain_of
-from handoff.interface_transfer import transferred_traction
-from handoff.transfer import Obstacle, TransferWeights, least_squares_weights, transferred
-from install_mpm.conventions import Kinematics
+from handoff.geostatic import elastic_strain_of
+from handoff.interface_transfer import FESurface
+from handoff.placed_pile import PlacedPile
+from handoff.tensor_arrays import relative_norm
+from handoff.transfer import TransferWeights, least_squares_weights, transferred
+from install_mpm.conventions import vertical_axis
 from install_mpm.geostatic import reference_state
 from install_mpm.ground import GroundProfile, material_at
-from install_mpm.material_points import MaterialPoints, cauchy_stress, plane_area
-from install_mpm.pile import Pile
+from install_mpm.material_points import MaterialPoints, cauchy_stress, plane_area, point_sizes
 from install_mpm.state_file import InstalledState
 
 FALLBACK_FROM = 2.0
@@ -29,32 +30,31 @@ class StateMap(NamedTuple):
 
     weights: TransferWeights
     relative_distance: np.ndarray
-    """Distance (n_q,) to the nearest visible material point over its size sqrt(area)."""
+    """Distance (n_q,) to the nearest visible material point over its size.
+
+    That is the square root of its area, or the cube root of its volume.
+    """
     geostatic_share: np.ndarray
     """Share (n_q,) of the geostatic state: 0 but for targets far from every material point."""
 
 
 def state_map(
-    points: MaterialPoints,
-    pile: Pile,
-    tip_depth: float,
-    targets: np.ndarray,
-    neighbours: int,
-    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
+    points: MaterialPoints, placed: PlacedPile, targets: np.ndarray, neighbours: int
 ) -> StateMap:
-    """Return the map from material points to ``targets`` (n_q, 2).
+    """Return the map from material points to ``targets`` (n_q, dim).
 
-    Points count with their area in the plane of the model.
+    Points count with their area in the plane of the model, in space with their volume.
 
     Raises
     ------
     ValueError
         If there are fewer material points than ``neighbours``.
     """
-    obstacle = Obstacle(pile.half_width, -tip_depth)
-    area = plane_area(points, kinematics)
-    weights = least_squares_weights(points.position, area, targets, neighbours, obstacle)
-    relative_distance = weights.distance / np.sqrt(area[weights.nearest])
+    measure = plane_area(points, placed.kinematics)
+    weights = least_squares_weights(
+        points.position, measure, targets, neighbours, placed.obstacle()
+    )
+    relative_distance = weights.distance / point_sizes(points, placed.kinematics)[weights.nearest]
     share = (relative_distance - FALLBACK_FROM) / (FALLBACK_FULL - FALLBACK_FROM)
     return StateMap(weights, relative_distance, np.clip(share, 0.0, 1.0))
 
@@ -70,9 +70,30 @@ def mapped(state_map: StateMap, difference: np.ndarray, geostatic: np.ndarray) -
     return total
 
 
+def map_errors(
+    at_points: np.ndarray,
+    reference: np.ndarray,
+    state_map: StateMap,
+    volumes: np.ndarray,
+    is_near: np.ndarray,
+) -> tuple[float, float]:
+    """Return the relative L2 errors of the mapped synthetic field, everywhere and near the pile.
+
+    ``at_points`` (p, 3, 3) and ``reference`` (n_q, 3, 3) are the self-equilibrated part of the
+    field at material points and integration points.  Both errors are over its norm alone, because the
+    geostatic part, though far larger, is mapped exactly.  ``is_near`` (n_q,) tells what is near.
+    """
+    error = mapped(state_map, at_points, np.zeros_like(reference)) - reference
+    return (
+        relative_norm(error, reference, volumes),
+        relative_norm(error[is_near], reference[is_near], volumes[is_near]),
+    )
+
+
 def transfer_state(
     installed: InstalledState,
     ground: GroundProfile,
+    placed: PlacedPile,
     problem: EquilibriumProblem,
     state_map: StateMap,
 ) -> FEState:
@@ -86,12 +107,13 @@ def transfer_state(
     ValueError
         If no soil touches a part of the pile.
     """
-    points, height = installed.material_points, problem.integration_positions[:, VERTICAL]
+    points, height = installed.material_points, problem.integration_positions[:, -1]
+    vertical = vertical_axis(placed.kinematics)
     is_beside_points = state_map.geostatic_share < 1.0
     nearest = points.material[state_map.weights.nearest]
     material = np.where(is_beside_points, nearest, material_at(ground, height))
-    at_points = reference_state(ground, points.material, points.position[:, VERTICAL], VERTICAL)
-    at_targets = reference_state(ground, material, height, VERTICAL)
+    at_points = reference_state(ground, points.material, points.position[:, -1], vertical)
+    at_targets = reference_state(ground, material, height, vertical)
     stress = mapped(state_map, cauchy_stress(points) - at_points[0], at_targets[0])
     variables = mapped(state_map, points.state_variables - at_points[1], at_targets[1])
     variables = _within_soil(variables, material, points, at_targets[1])
@@ -100,14 +122,19 @@ def transfer_state(
         elastic_strain=elastic_strain_of(ground, material, stress, variables),
         state_variables=variables,
         material=material,
-        interface_traction=transferred_traction(
-            ground,
-            installed.interface,
-            problem.interface_positions,
-            problem.interface_areas,
-            problem.interface_parts,
-        ),
-        pile_displacement=np.zeros(2),
+        interface_traction=placed.traction(ground, installed, surface_of(problem)),
+        pile_displacement=np.zeros(problem.interface_positions.shape[1]),
+    )
+
+
+def surface_of(problem: EquilibriumProblem) -> FESurface:
+    """Return the interface points of a finite-element model."""
+    return FESurface(
+        problem.interface_positions,
+        problem.interface_normals,
+        problem.interface_facet_normals,
+        problem.interface_areas,
+        problem.interface_parts,
     )
 
 

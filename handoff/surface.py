@@ -4,8 +4,8 @@ Local regression (loess) of the vertical displacement of the points that started
 
     u_z(x, d) = a + b (x - x_s) + c d ,
 
-at stations x_s along the present surface; d is the depth at which a point started, so a is the
-motion of the surface itself rather than of the uppermost points.
+at stations x_s along the present surface, in space at distances from the axis; d is the depth at
+which a point started, so a is the motion of the surface itself rather than of the uppermost points.
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from install_mpm.conventions import Kinematics
-from install_mpm.material_points import MaterialPoints, at_start, plane_area
+from install_mpm.conventions import Kinematics, dimension
+from install_mpm.material_points import MaterialPoints, at_start, point_sizes
 
 LAYER = 3.0
 """Points whose initial depth is less than this many point sizes follow the surface."""
-NEIGHBOURS = 30
-"""Points in each local regression."""
+NEIGHBOURS = {2: 30, 3: 120}
+"""Points in each local regression by dimension; in space they are taken all around the pile."""
 STEEPEST = 1.0
 """Slope (height over length) to which folds and gaps beside the shaft are flattened."""
 
@@ -29,7 +29,7 @@ class SurfaceProfile(NamedTuple):
     """Height of the ground surface, linear between stations and constant outside."""
 
     x: np.ndarray
-    """Stations (n,) in m, increasing."""
+    """Stations (n,) in m from the axis, increasing."""
     height: np.ndarray
     """Height (n,) in m above z = 0, positive for heave."""
 
@@ -63,18 +63,27 @@ def surface_profile(
     """
     if not points.displacement.any():
         return level_surface()
-    initial_size = np.sqrt(plane_area(at_start(points), kinematics))
-    depth = points.displacement[:, 1] - points.position[:, 1]
-    top = np.flatnonzero((depth < LAYER * initial_size) & (points.position[:, 0] > half_width))
-    if len(top) < NEIGHBOURS:
+    initial_size = point_sizes(at_start(points), kinematics)
+    depth = points.displacement[:, -1] - points.position[:, -1]
+    radius = _distance_from_axis(points.position)
+    top = np.flatnonzero((depth < LAYER * initial_size) & (radius > half_width))
+    count = NEIGHBOURS[dimension(kinematics)]
+    if len(top) < count:
         raise ValueError(
-            f"only {len(top)} material points started near the surface, {NEIGHBOURS} are needed to"
+            f"only {len(top)} material points started near the surface, {count} are needed to"
             " find it; use more material points or smaller cells"
         )
-    x = points.position[top, 0]
+    x = radius[top]
     stations = _stations(x, half_width, station)
-    heights = _regressed(stations, x, depth[top], points.displacement[top, 1])
+    heights = _regressed(stations, x, depth[top], points.displacement[top, -1], count)
     return SurfaceProfile(stations, _flattened(stations, heights))
+
+
+def _distance_from_axis(positions: np.ndarray) -> np.ndarray:
+    """Return x or r (n,) in m, in the plane or in space."""
+    if positions.shape[1] == 2:
+        return positions[:, 0]
+    return np.linalg.norm(positions[:, :2], axis=1)
 
 
 def _stations(x: np.ndarray, half_width: float, spacing: float) -> np.ndarray:
@@ -87,16 +96,20 @@ def _stations(x: np.ndarray, half_width: float, spacing: float) -> np.ndarray:
 
 
 def _regressed(
-    stations: np.ndarray, x: np.ndarray, depth: np.ndarray, displacement: np.ndarray
+    stations: np.ndarray,
+    x: np.ndarray,
+    depth: np.ndarray,
+    displacement: np.ndarray,
+    count: int,
 ) -> np.ndarray:
     """Return the regression (n_stations,) at depth zero, with tricube weights."""
     heights = np.empty(len(stations))
     for index, station in enumerate(stations):
         offset = x - station
-        near = np.argsort(np.abs(offset), kind="stable")[:NEIGHBOURS]
+        near = np.argsort(np.abs(offset), kind="stable")[:count]
         radius = 1.001 * np.abs(offset[near]).max()
         weights = (1.0 - np.abs(offset[near] / radius) ** 3) ** 3
-        terms = np.column_stack([np.ones(NEIGHBOURS), offset[near] / radius, depth[near] / radius])
+        terms = np.column_stack([np.ones(count), offset[near] / radius, depth[near] / radius])
         heights[index] = _robust_fit(terms, displacement[near], weights)[0]
     return heights
 

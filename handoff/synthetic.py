@@ -10,21 +10,28 @@ behind.  In axisymmetry phi is a function of r and z and the field that balances
 
     s_rr = s_hoop = phi,zz ,   s_zz = phi,rr + phi,r / r ,   s_rz = -phi,rz .
 
-  The error of the map is known for it without any reference solution, at the actual points.
+In space, with a function phi of the distance from places at the rim of the plates and at the tip
+and with L from the radius of the shaft, it is
+
+    s_xx = s_yy = phi,zz ,   s_zz = phi,xx + phi,yy ,   s_xz = -phi,xz ,   s_yz = -phi,yz .
+
+The error of the map is known for it without any reference solution, at the actual points.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from handoff.geostatic import VERTICAL
-from handoff.state_transfer import StateMap, mapped
-from install_mpm.conventions import Kinematics
+from install_mpm.conventions import Kinematics, rotation_matrix
 from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
 from install_mpm.pile import Pile
+from install_mpm.screw_pile import ScrewPile
 
 STRENGTHS = 4.0
 """Amplitude A of the Airy field over the undrained shear strength at the tip."""
+
+RIM_LENGTH = 1.5
+"""Length L of the field in space over the radius of the shaft."""
 
 
 def airy_stress(
@@ -35,9 +42,7 @@ def airy_stress(
     kinematics: Kinematics = Kinematics.PLANE_STRAIN,
 ) -> np.ndarray:
     """Return the self-equilibrated part (n, 3, 3) in Pa of the synthetic field at (n, 2)."""
-    strength = undrained_shear_strength(ground, np.array([-tip_depth]))[0]
-    overburden = -geostatic_stress(ground, np.array([-tip_depth]), VERTICAL)[0, VERTICAL, VERTICAL]
-    amplitude = STRENGTHS * strength if strength > 0.0 else overburden
+    amplitude = _amplitude(ground, tip_depth)
     stress = np.zeros((len(positions), 3, 3))
     below = (positions[:, 1] + tip_depth) / pile.half_width
     for side in (-1.0, 1.0):
@@ -54,29 +59,44 @@ def airy_stress(
     return stress
 
 
-def synthetic_errors(
-    ground: GroundProfile,
-    pile: Pile,
-    tip_depth: float,
-    state_map: StateMap,
-    point_positions: np.ndarray,
-    targets: np.ndarray,
-    volumes: np.ndarray,
-    kinematics: Kinematics = Kinematics.PLANE_STRAIN,
-) -> tuple[float, float]:
-    """Return the relative L2 errors of the mapped synthetic field, everywhere and near the pile.
+def _amplitude(ground: GroundProfile, tip_depth: float) -> float:
+    """Return the amplitude A in Pa: of the strength at the tip, or the stress there without one."""
+    strength = undrained_shear_strength(ground, np.array([-tip_depth]))[0]
+    overburden = -geostatic_stress(ground, np.array([-tip_depth]), vertical=1)[0, 1, 1]
+    return float(STRENGTHS * strength if strength > 0.0 else overburden)
 
-    Both are errors over the norm of the Airy part alone, because the geostatic part, though far
-    larger, is mapped exactly.  Near is within one pile width of the pile.
+
+def rim_stress(
+    ground: GroundProfile, pile: ScrewPile, rotation: float, positions: np.ndarray
+) -> np.ndarray:
+    """Return the self-equilibrated part (n, 3, 3) in Pa of the synthetic field around a screw pile.
+
+    The pile has its tip at the depth ``embedment`` and has turned by ``rotation`` in rad.
     """
-    at_points = airy_stress(ground, pile, tip_depth, point_positions, kinematics)
-    reference = airy_stress(ground, pile, tip_depth, targets, kinematics)
-    error = mapped(state_map, at_points, np.zeros_like(reference)) - reference
-    is_near = distance_to_pile(pile, tip_depth, targets) <= pile.width
-    return (
-        relative_norm(error, reference, volumes),
-        relative_norm(error[is_near], reference[is_near], volumes[is_near]),
-    )
+    amplitude, length = _amplitude(ground, pile.embedment), RIM_LENGTH * pile.shaft_radius
+    stress = np.zeros((len(positions), 3, 3))
+    for centre in _centres(pile) @ rotation_matrix(rotation, 3).T:
+        x, y, z = ((positions - centre) / length).T
+        bell = amplitude * np.exp(-0.5 * (x**2 + y**2 + z**2))
+        stress[:, 0, 0] += bell * (z**2 - 1.0)
+        stress[:, 1, 1] += bell * (z**2 - 1.0)
+        stress[:, 2, 2] += bell * (x**2 + y**2 - 2.0)
+        stress[:, 0, 2] -= bell * x * z
+        stress[:, 1, 2] -= bell * y * z
+    stress[:, 2, 0], stress[:, 2, 1] = stress[:, 0, 2], stress[:, 1, 2]
+    return stress
+
+
+def _centres(pile: ScrewPile) -> np.ndarray:
+    """Return places (n, 3) in m in the frame of the pile: its tip, and three on each rim."""
+    places = [np.array([0.0, 0.0, -pile.embedment])]
+    for helix in pile.helices:
+        for winding in np.array([0.0, 0.4, 0.8]) * helix.winding:
+            polar = pile.sense * winding
+            level = pile.leading_level(helix) + helix.pitch * winding / (2.0 * np.pi)
+            places.append(np.array([np.cos(polar), np.sin(polar), 0.0]) * helix.radius)
+            places[-1][2] = level
+    return np.array(places)
 
 
 def distance_to_pile(pile: Pile, tip_depth: float, positions: np.ndarray) -> np.ndarray:
@@ -85,9 +105,3 @@ def distance_to_pile(pile: Pile, tip_depth: float, positions: np.ndarray) -> np.
     below = np.maximum(-tip_depth - positions[:, 1], 0.0)
     distance: np.ndarray = np.hypot(beside, below)
     return distance
-
-
-def relative_norm(change: np.ndarray, reference: np.ndarray, volumes: np.ndarray) -> float:
-    """Return the volume-weighted L2 norm of tensors ``change`` over that of ``reference``."""
-    norms = [np.sqrt(volumes @ (field**2).sum(axis=(1, 2))) for field in (change, reference)]
-    return float(norms[0] / norms[1])

@@ -19,3 +19,9 @@ def tensors_of(vectors: np.ndarray) -> np.ndarray:
     tensors[:, ROW, COLUMN] = vectors / SCALE
     tensors[:, COLUMN, ROW] = vectors / SCALE
     return tensors
+
+
+def relative_norm(change: np.ndarray, reference: np.ndarray, volumes: np.ndarray) -> float:
+    """Return the volume-weighted L2 norm of tensors ``change`` over that of ``reference``."""
+    norms = [np.sqrt(volumes @ (field**2).sum(axis=(1, 2))) for field in (change, reference)]
+    return float(norms[0] / norms[1])

@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from install_mpm.conventions import Kinematics
+from install_mpm.conventions import Kinematics, dimension
 from install_mpm.record import Field
 
 
@@ -52,6 +52,12 @@ def plane_area(points: MaterialPoints, kinematics: Kinematics) -> np.ndarray:
         return points.volume
     area: np.ndarray = points.volume / (2.0 * np.pi * points.position[:, 0])
     return area
+
+
+def point_sizes(points: MaterialPoints, kinematics: Kinematics) -> np.ndarray:
+    """Return the size (n_points,) in m: square root of the area, or cube root of the volume."""
+    sizes: np.ndarray = plane_area(points, kinematics) ** (1.0 / dimension(kinematics))
+    return sizes
 
 
 def at_start(points: MaterialPoints) -> MaterialPoints:

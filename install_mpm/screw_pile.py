@@ -157,6 +157,22 @@ def distance_to_parts(pile: ScrewPile, points: np.ndarray) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
+def distance_to_plates(pile: ScrewPile, points: np.ndarray) -> np.ndarray:
+    """Return the distance (n,) in m of ``points`` (n, 3) from the nearest plate.
+
+    It is measured to the height of the plate at the winding angle of the point; infinite without a
+    plate.
+    """
+    radius = np.linalg.norm(points[:, :2], axis=1)
+    nearest = np.full(len(points), np.inf)
+    for helix in pile.helices:
+        winding = np.clip(winding_angle(pile, helix, points), 0.0, helix.winding)
+        middle = pile.leading_level(helix) + helix.pitch * winding / (2.0 * np.pi)
+        off_level = np.maximum(np.abs(points[:, 2] - middle) - helix.thickness / 2.0, 0.0)
+        nearest = np.minimum(nearest, np.hypot(np.maximum(radius - helix.radius, 0.0), off_level))
+    return nearest
+
+
 def _distance_to_cone(pile: ScrewPile, radius: np.ndarray, above_tip: np.ndarray) -> np.ndarray:
     if pile.tip_length == 0.0:
         return np.full(len(radius), np.inf)

@@ -24,7 +24,7 @@ class Release:
 
 @dataclass(frozen=True)
 class Displace:
-    """Move the pile along its axis in equal steps, guided; positive ``displacement`` is downward."""
+    """Move the pile along its axis in equal steps, guided; a positive way is downward."""
 
     name: Name
     displacement: Annotated[float, Unit("m")]

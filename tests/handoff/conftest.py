@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from handoff.fe_mesh import FacetTag, FEMesh, cell_areas, make_mesh
+from handoff.fe_mesh import FEMesh, cell_areas, make_mesh
 from handoff.geostatic import elastic_strain_of, geostatic_traction
 from handoff.options import HandoffOptions
+from handoff.placed_pile import PlacedFlatPile
 from handoff.surface import level_surface
 from install_mpm.constitutive import coulomb_interface, dispatch
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
@@ -35,6 +36,7 @@ class Site:
     )
     interface = CoulombInterface(2e8, 2e7, adhesion_factor=0.5)
     options = HandoffOptions(size_at_pile=0.1, size_far=0.5)
+    placed = PlacedFlatPile(pile, TIP_DEPTH)
 
     def mesh(self, size: float = 0.1, surface=None, coarsening: float = 5.0) -> FEMesh:
         options = HandoffOptions(size_at_pile=size, size_far=coarsening * size)
@@ -139,7 +141,7 @@ def integration_points(mesh: FEMesh) -> tuple[np.ndarray, np.ndarray]:
 
 def pile_surface(mesh: FEMesh) -> SimpleNamespace:
     """Two Gauss points on each pile facet: positions, areas, normals, parts."""
-    is_pile = mesh.facet_tag <= FacetTag.PILE_SHAFT
+    is_pile = mesh.facet_tag >= 0
     ends = mesh.nodes[mesh.facet_nodes[is_pile, :2]]
     places = np.array([0.5 - 0.5 / np.sqrt(3.0), 0.5 + 0.5 / np.sqrt(3.0)])
     positions = ends[:, :1] + places[:, None] * (ends[:, 1:] - ends[:, :1])

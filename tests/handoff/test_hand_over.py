@@ -23,6 +23,7 @@ class KnownSolution:
         surface = build.pile_surface(mesh)
         self.interface_positions, self.interface_areas = surface.positions, surface.areas
         self.interface_normals, self.interface_parts = surface.normals, surface.parts
+        self.interface_facet_normals = surface.normals
 
     def geostatic(self):
         return geostatic_state(
@@ -56,7 +57,7 @@ def run(site, build):
         return hand_over(
             installed,
             site.ground,
-            site.pile,
+            site.placed,
             site.box,
             site.interface,
             options or site.options,

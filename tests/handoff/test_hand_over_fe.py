@@ -18,7 +18,7 @@ def run(site):
         return hand_over(
             installed,
             site.ground,
-            site.pile,
+            site.placed,
             site.box,
             site.interface,
             site.options,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from handoff.geostatic import geostatic_traction
-from handoff.interface_transfer import pile_forces, transferred_traction
+from handoff.interface_transfer import forces_on_pile, part_forces, transferred_traction
 from install_mpm.pile import PilePart
 
 pytestmark = pytest.mark.gmsh
@@ -34,18 +34,21 @@ def test_resultant_of_each_part_is_kept(site, build, surface):
     traction = transferred_traction(
         site.ground, points, surface.positions, surface.areas, surface.parts
     )
-    before = pile_forces(points.traction, points.normal, points.area * points.covered, points.part)
-    after = pile_forces(traction, surface.normals, surface.areas, surface.parts)
-    for part in PilePart:
-        assert after[part] == pytest.approx(before[part], rel=2e-3)
+    covered = points.area * points.covered
+    before = forces_on_pile(points.traction, points.normal, covered, points.position)
+    after = forces_on_pile(traction, surface.normals, surface.areas, surface.positions)
+    assert part_forces(after, surface.parts, 2)[:, 1] == pytest.approx(
+        part_forces(before, points.part, 2)[:, 1], rel=2e-3
+    )
 
 
 def test_reaction_is_upward_under_pressure_and_pulling_down_soil(site):
     """Soil presses on the base and is dragged down by the shaft: both push the pile up."""
     traction = np.array([[0.0, -100.0], [30.0, 0.0]])
     normals = np.array([[0.0, 1.0], [-1.0, 0.0]])
-    forces = pile_forces(traction, normals, np.array([0.5, 2.0]), np.array([0, 1]))
-    assert forces == {PilePart.BASE: 100.0, PilePart.SHAFT: 120.0}
+    places = np.array([[0.2, -2.0], [0.5, -1.0]])
+    forces = forces_on_pile(traction, normals, np.array([0.5, 2.0]), places)
+    np.testing.assert_array_equal(part_forces(forces, np.array([0, 1]), 2)[:, 1], [50.0, 60.0])
 
 
 def test_lost_contact_inside_a_part_takes_the_difference_of_its_neighbours(site, build, surface):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from handoff.state_transfer import state_map
-from handoff.synthetic import airy_stress, distance_to_pile, synthetic_errors
+from handoff.state_transfer import map_errors, state_map
+from handoff.synthetic import airy_stress, distance_to_pile
 from install_mpm.conventions import Kinematics
 
 
@@ -38,10 +38,10 @@ def test_error_falls_with_the_density_of_points(site, build):
     errors = []
     for size in (0.2, 0.1, 0.05):
         points = build.points(site.mesh(size), site.ground)
-        chart = state_map(points, site.pile, 2.0, targets, 32)
-        errors.append(
-            synthetic_errors(site.ground, site.pile, 2.0, chart, points.position, targets, volumes)
-        )
+        chart = state_map(points, site.placed, targets, 32)
+        fields = (site.placed.synthetic_stress(site.ground, x) for x in (points.position, targets))
+        is_near = site.placed.distance(targets) <= site.placed.near
+        errors.append(map_errors(*fields, chart, volumes, is_near))
     everywhere, near = np.transpose(errors)
     assert (np.diff(everywhere) < 0.0).all()
     assert (np.diff(near) < 0.0).all()

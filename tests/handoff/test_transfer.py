@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
+from handoff.line_of_sight import Obstacle, is_hidden_by_wall
 from handoff.transfer import (
-    Obstacle,
-    is_hidden,
     least_squares_weights,
     transfer_least_squares,
     transfer_nearest,
@@ -99,8 +98,8 @@ def test_volumes_weigh_the_mean():
 )
 def test_pile_hides_points_behind_it(start, end, hidden):
     corner = np.array(PILE)
-    assert bool(is_hidden(np.array(start), np.array(end), corner)) is hidden
-    assert bool(is_hidden(np.array(end), np.array(start), corner)) is hidden
+    assert bool(is_hidden_by_wall(np.array(start), np.array(end), corner)) is hidden
+    assert bool(is_hidden_by_wall(np.array(end), np.array(start), corner)) is hidden
 
 
 def test_hidden_points_never_contribute():
@@ -111,12 +110,12 @@ def test_hidden_points_never_contribute():
     targets = np.array([[0.51, -1.8], [0.3, -2.01]])
     table = least_squares_weights(cloud, np.ones(len(cloud)), targets, 400, PILE)
     for target, neighbours, weights in zip(targets, table.neighbours, table.weights, strict=True):
-        hidden = [is_hidden(target, point, np.array(PILE)) for point in cloud[neighbours]]
+        hidden = [is_hidden_by_wall(target, point, np.array(PILE)) for point in cloud[neighbours]]
         assert not np.any(np.array(hidden) & (weights != 0.0))
         assert np.count_nonzero(weights) > 100
     blind = least_squares_weights(cloud, np.ones(len(cloud)), targets, 400)
     assert any(
-        is_hidden(target, point, np.array(PILE))
+        is_hidden_by_wall(target, point, np.array(PILE))
         for target, row in zip(targets, blind.neighbours, strict=True)
         for point in cloud[row]
     )

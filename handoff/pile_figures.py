@@ -1,0 +1,147 @@
+"""Figures of the certificate that tell what the pile feels: resultants, and stress around it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from handoff.equilibration import EquilibriumProblem
+from handoff.fe_state_file import FEState
+from handoff.figure import Figure, relative_difference
+from handoff.interface_transfer import forces_on_pile, part_forces
+from handoff.options import HandoffOptions
+from handoff.placed_pile import PlacedPile
+from install_mpm.conventions import dimension
+from install_mpm.interface import force_on_pile
+from install_mpm.pile import WHOLE_PILE
+from install_mpm.state_file import InstalledState
+
+STAGES = ("mpm", "transferred", "equilibrated")
+
+
+def reaction_figures(
+    installed: InstalledState,
+    placed: PlacedPile,
+    problem: EquilibriumProblem,
+    states: tuple[FEState, FEState],
+    options: HandoffOptions,
+) -> dict[str, Figure]:
+    """Return the soil reaction on the pile and its parts in material points and finite elements.
+
+    ``states`` are those before and after the equilibration.
+    """
+    forces, places = _point_forces(installed, problem, states)
+    whole, names = WHOLE_PILE[placed.kinematics], placed.part_names
+    parts = {
+        stage: whole * part_forces(force, part, len(names))
+        for (stage, force), part in zip(
+            forces.items(),
+            (installed.interface.part, problem.interface_parts, problem.interface_parts),
+            strict=True,
+        )
+    }
+    figures = {
+        f"pile_{name.replace(' ', '_')}_force_{stage}": Figure(
+            float(parts[stage][number, -1]), "N", f"upward soil reaction on the {name}: {stage}"
+        )
+        for stage in STAGES
+        for number, name in enumerate(names)
+        if parts["transferred"][number].any()
+    }
+    before = whole * np.asarray(installed.pile.reaction)
+    after = parts["equilibrated"].sum(axis=0)
+    what = "upward soil reaction on the pile"
+    figures |= {
+        "pile_reaction_mpm": Figure(float(before[-1]), "N", f"{what}: mpm"),
+        "pile_reaction_equilibrated": Figure(float(after[-1]), "N", f"{what}: equilibrated"),
+    }
+    compared = slice(0 if dimension(placed.kinematics) == 3 else -1, None)  # of a half: vertical
+    figures["pile_reaction_change"] = Figure(
+        _change(after[compared], before[compared], parts["mpm"][:, compared]),
+        "",
+        "pile reaction, finite elements against material points, over the sum of the parts",
+        options.max_reaction_change,
+    )
+    if dimension(placed.kinematics) == 3:
+        figures |= _moment_figures(forces, places, installed.interface.part, options)
+    return figures
+
+
+def _point_forces(
+    installed: InstalledState, problem: EquilibriumProblem, states: tuple[FEState, FEState]
+) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Return forces (n, dim) in N and places (n, dim) in m of the interface points by stage."""
+    place = problem.interface_positions
+    on_fe = [
+        forces_on_pile(
+            state.interface_traction, problem.interface_normals, problem.interface_areas, place
+        )
+        for state in states
+    ]
+    forces = dict(zip(STAGES, (force_on_pile(installed.interface), *on_fe), strict=True))
+    places = dict(zip(STAGES, (installed.interface.position, place, place), strict=True))
+    return forces, places
+
+
+def _moment_figures(
+    forces: dict[str, np.ndarray],
+    places: dict[str, np.ndarray],
+    part: np.ndarray,
+    options: HandoffOptions,
+) -> dict[str, Figure]:
+    """Return the torque on the pile, and how far its moment is from that in material points."""
+    moments = {stage: np.cross(places[stage], force) for stage, force in forces.items()}
+    total = {stage: moment.sum(axis=0) for stage, moment in moments.items()}
+    scale = part_forces(moments["mpm"], part, int(part.max()) + 1)
+    figures = {
+        f"pile_torque_{stage}": Figure(
+            float(moment[2]), "N m", f"moment of the soil about the pile axis: {stage}"
+        )
+        for stage, moment in total.items()
+    }
+    figures["pile_moment_change"] = Figure(
+        _change(total["equilibrated"], total["mpm"], scale),
+        "",
+        "moment on the pile, finite elements against material points, over the sum of the parts",
+        options.max_reaction_change,
+    )
+    return figures
+
+
+def _change(after: np.ndarray, before: np.ndarray, parts: np.ndarray) -> float:
+    """Return |after - before| over the sum of the magnitudes of the ``parts`` (n, dim)."""
+    scale = float(np.linalg.norm(parts, axis=1).sum())
+    change = float(np.linalg.norm(after - before))
+    return change / scale if scale else change
+
+
+def relaxation_figures(
+    placed: PlacedPile,
+    problem: EquilibriumProblem,
+    states: tuple[FEState, FEState],
+    options: HandoffOptions,
+) -> dict[str, Figure]:
+    """Return what the equilibration takes from the stress around the pile (Engin 2013)."""
+    is_near = placed.distance(problem.integration_positions) <= placed.width
+    weights = problem.integration_volumes * is_near
+    pressures = [
+        -float(weights @ np.trace(state.cauchy_stress, axis1=1, axis2=2)) / 3.0 / weights.sum()
+        for state in states
+    ]
+    contact = [
+        -float(problem.interface_areas @ state.interface_traction[:, -1])
+        / float(problem.interface_areas.sum())
+        for state in states
+    ]
+    figures = {}
+    for stage, near, on_pile in zip(STAGES[1:], pressures, contact, strict=True):
+        what = "mean pressure in the soil within one pile width"
+        figures[f"mean_pressure_near_pile_{stage}"] = Figure(near, "Pa", f"{what}: {stage}")
+        what = "mean contact pressure on the pile"
+        figures[f"contact_pressure_{stage}"] = Figure(on_pile, "Pa", f"{what}: {stage}")
+    figures["mean_pressure_relaxation"] = Figure(
+        relative_difference(pressures[1], pressures[0]),
+        "",
+        "change of the mean pressure within one pile width in the equilibration",
+        options.max_relaxation,
+    )
+    return figures
