@@ -74,6 +74,7 @@ class HandedOffPile(NamedTuple):
     """The rigid pile at the hand-over."""
 
     tip_depth: Annotated[np.ndarray, Field((), "m", "depth of the tip below the original surface")]
+    rotation: Annotated[np.ndarray, Field((), "rad", "right-handed about +z since the start")]
     head_load: Annotated[
         np.ndarray,
         Field((), "N", "downward load that holds the modelled part: soil reaction less its weight"),

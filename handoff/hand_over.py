@@ -103,7 +103,11 @@ def _handed_off(evidence: Evidence, mesh: FEMesh, certificate: Certificate) -> H
         interface=FEInterfacePoints(
             surface.positions, surface.normals, surface.areas, surface.parts
         ),
-        pile=HandedOffPile(np.array(placed.tip_depth), np.array(head_load)),
+        pile=HandedOffPile(
+            np.array(placed.tip_depth),
+            np.array(evidence.installed.pile.rotation),
+            np.array(head_load),
+        ),
         certificate=as_json(certificate),
         case_text=evidence.installed.case_text,
     )

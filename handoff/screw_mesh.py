@@ -73,6 +73,12 @@ def make_screw_mesh(
     return mesh
 
 
+def largest_size(pile: ScrewPile) -> float:
+    """Return the largest ``size_at_pile`` in m that shaft and plates can be meshed with."""
+    limits = [LARGEST_ON_PLATE * helix.thickness for helix in pile.helices]
+    return float(min([pile.shaft_radius, *limits]))
+
+
 def _check_geometry(pile: ScrewPile, box: Box, options: HandoffOptions) -> None:
     if not 0.0 < pile.embedment < box.depth:
         raise MeshError(
@@ -81,8 +87,7 @@ def _check_geometry(pile: ScrewPile, box: Box, options: HandoffOptions) -> None:
         )
     if options.size_far < options.size_at_pile:
         raise MeshError("handoff.size_far is smaller than handoff.size_at_pile; make it larger")
-    limits = [LARGEST_ON_PLATE * helix.thickness for helix in pile.helices]
-    limit = min([pile.shaft_radius, *limits])
+    limit = largest_size(pile)
     if options.size_at_pile > limit:
         raise MeshError(
             f"handoff.size_at_pile {options.size_at_pile:g} m cannot hold the shaft and the plates"

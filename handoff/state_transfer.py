@@ -80,8 +80,9 @@ def map_errors(
     """Return the relative L2 errors of the mapped synthetic field, everywhere and near the pile.
 
     ``at_points`` (p, 3, 3) and ``reference`` (n_q, 3, 3) are the self-equilibrated part of the
-    field at material points and integration points.  Both errors are over its norm alone, because the
-    geostatic part, though far larger, is mapped exactly.  ``is_near`` (n_q,) tells what is near.
+    field at material points and integration points.  Both errors are over its norm alone, because
+    the geostatic part, though far larger, is mapped exactly.  ``is_near`` (n_q,) tells what is
+    near.
     """
     error = mapped(state_map, at_points, np.zeros_like(reference)) - reference
     return (

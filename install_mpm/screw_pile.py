@@ -71,6 +71,11 @@ class ScrewPile:
         return self.shaft_diameter / 2.0
 
     @property
+    def width(self) -> float:
+        """Diameter in m of the largest plate, or of the shaft."""
+        return max([self.shaft_diameter, *(helix.diameter for helix in self.helices)])
+
+    @property
     def sense(self) -> float:
         """Hand of the helices: +1 right, -1 left."""
         return 1.0 if self.hand == "right" else -1.0

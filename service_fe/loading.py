@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -18,6 +20,48 @@ ALONG, ACROSS, UP, TILT_ACROSS, TILT, TWIST = range(6)
 """
 
 COMPONENT = {"vertical": UP, "lateral": ALONG, "moment": TILT, "torque": TWIST}
+
+
+EQUILIBRATED, RELEASED = "equilibrated", "released"
+"""States that programmes start from: as handed over, and at the end of the last release."""
+
+
+def contradiction(programmes: Sequence[Programme]) -> str | None:
+    """Return what is wrong with names, ways and starts of ``programmes``, None if nothing is."""
+    counts = Counter(programme.name for programme in programmes)
+    for name, count in counts.items():
+        if count > 1:
+            return f"{count} programmes are named {name!r}; give each a name of its own"
+    known: set[str] = set()
+    for programme in programmes:
+        if not isinstance(programme, Release):
+            if _way(programme) == 0.0:
+                return f"{programme.name!r} has no displacement; give it one"
+            wrong = _wrong_start(programme.name, programme.start, known)
+            if wrong is not None:
+                return wrong
+        known |= {programme.name} | ({RELEASED} if isinstance(programme, Release) else set())
+    return None
+
+
+def _way(programme: Programme) -> float | None:
+    """Return how far a programme that prescribes it moves or turns the pile, in m or rad."""
+    if isinstance(programme, Rotate):
+        return programme.rotation
+    return programme.displacement if isinstance(programme, Displace | Lateral) else None
+
+
+def _wrong_start(name: str, start: str, known: set[str]) -> str | None:
+    """Return what is wrong with the start of a programme, None if nothing is."""
+    if start == EQUILIBRATED or start in known:
+        return None
+    if start == RELEASED:
+        return (
+            f"{name!r} starts from the released pile; put a programme of kind "
+            '"release" before it, or set start = "equilibrated"'
+        )
+    before = ", ".join(sorted({EQUILIBRATED, *known}))
+    return f"{name!r} starts from {start!r}, which is not before it; use one of {before}"
 
 
 class Mode(NamedTuple):

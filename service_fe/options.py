@@ -101,9 +101,9 @@ class Cycles:
     """Cycles of one load of a pile in space, force-controlled; all other loads stay as they are."""
 
     name: Name
-    component: Literal["vertical", "lateral", "moment", "torque"]
+    component: Literal["vertical", "lateral"]
+    """Vertical is positive downward; lateral is a load at the ``height``."""
     amplitude: Annotated[float, Unit("N"), Gt(0)]
-    """In N, or in N m of a moment or a torque."""
     cycles: Annotated[int, Ge(1)]
     mean: Annotated[float, Unit("N")] = 0.0
     """Zero: two-way; the amplitude: one-way."""

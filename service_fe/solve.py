@@ -13,16 +13,20 @@ import numpy as np
 from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEState
 from install_mpm.newton import convergence_order
 from service_fe.load_step import Step, Unknowns
-from service_fe.loading import ImposedStep, Mode, imposed_steps
+from service_fe.loading import (
+    EQUILIBRATED,
+    RELEASED,
+    ImposedStep,
+    Mode,
+    contradiction,
+    imposed_steps,
+)
 from service_fe.newton import StepNotConvergedError
-from service_fe.options import Programme, Release, Rotate
+from service_fe.options import Programme, Release
 from service_fe.problem import ServiceProblem
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
 from service_fe.rigid_pile import PileControl
 from service_fe.settling import Settled, settle
-
-EQUILIBRATED, RELEASED = "equilibrated", "released"
-"""States that programmes start from: as handed over, and at the end of the last release."""
 
 
 class ServiceError(RuntimeError):
@@ -118,34 +122,9 @@ def check_programmes(programmes: Sequence[Programme]) -> None:
     ServiceError
         If two programmes have one name, or one moves nothing or starts from what is not before it.
     """
-    names = [programme.name for programme in programmes]
-    for name in names:
-        if names.count(name) > 1:
-            raise ServiceError(f"two programmes are called {name!r}; give each its own name")
-    known = {EQUILIBRATED}
-    for programme in programmes:
-        known.add(programme.name)
-        if isinstance(programme, Release):
-            known.add(RELEASED)
-            continue
-        if _moves_nothing(programme):
-            raise ServiceError(f"programme {programme.name!r} has no displacement; give it one")
-        if programme.start == RELEASED and RELEASED not in known:
-            raise ServiceError(
-                f"programme {programme.name!r} starts from the released pile; put a programme of"
-                ' kind "release" before it, or let it start from "equilibrated"'
-            )
-        if programme.start not in known - {programme.name}:
-            raise ServiceError(
-                f"programme {programme.name!r} starts from {programme.start!r}, which is not before"
-                f" it; use one of {', '.join(sorted(known - {programme.name}))}"
-            )
-
-
-def _moves_nothing(programme: Programme) -> bool:
-    return getattr(programme, "displacement", 1.0) == 0.0 or (
-        isinstance(programme, Rotate) and programme.rotation == 0.0
-    )
+    wrong = contradiction(programmes)
+    if wrong is not None:
+        raise ServiceError(f"programme: {wrong}")
 
 
 def run_programme(

@@ -8,12 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from install_mpm.conventions import Kinematics
 from install_mpm.history import History
 from install_mpm.pile import PilePart
 from install_mpm.state_file import InstalledState
-from service_fe.options import Displace
+from service_fe.loading import RELEASED
+from service_fe.options import Displace, Lateral, Rotate
 from service_fe.results import Curve, ProgrammeResult, ServiceResult, characteristics, head_load_at
-from workflows.case import Case
+from workflows.case import AnyCase
+from workflows.screw_theory import driven
 
 COLUMNS = ("programme", "model", "displacement_m", "head_load_N", "iterations", "residual")
 
@@ -47,7 +50,7 @@ def curves_csv(results: list[ServiceResult]) -> str:
 
 
 def headline(
-    case: Case, installed: InstalledState, service: ServiceResult, wished: ServiceResult
+    case: AnyCase, installed: InstalledState, service: ServiceResult, wished: ServiceResult
 ) -> dict[str, Any]:
     """Return the headline results of a run as plain data; names carry the SI unit."""
     return {
@@ -63,16 +66,27 @@ def headline(
 
 
 def installation_figures(installed: InstalledState) -> dict[str, Any]:
-    """Return depth and forces at the end of the installation (whole pile, per metre run)."""
+    """Return depth and forces at the end of the installation (whole pile, a wall per metre run).
+
+    Those of a screw pile are the last ones before the rig lets go.
+    """
     history = installed.history
-    return {
+    figures = {
         "penetration_m": float(installed.pile.penetration),
         "tip_depth_m": float(installed.pile.tip_depth),
+        "steps": len(history.penetration),
+        "material_points": len(installed.material_points.mass),
+    }
+    if installed.kinematics == Kinematics.THREE_D:
+        last = driven(history)
+        return figures | {
+            "crowd_force_N": float(last.crowd_force[-1]),
+            "torque_N m": float(last.torque[-1]),
+        }
+    return figures | {
         "crowd_force_N": float(history.crowd_force[-1]),
         f"{PilePart.BASE.name.lower()}_force_N": float(history.base_force[-1]),
         f"{PilePart.SHAFT.name.lower()}_force_N": float(history.shaft_force[-1]),
-        "steps": len(history.penetration),
-        "material_points": len(installed.material_points.mass),
     }
 
 
@@ -83,16 +97,17 @@ def programme_figures(
 
     A ratio is taken where both models start without head load, i.e. from the released pile.
     """
-    if not isinstance(installed.programme, Displace):
+    programme = installed.programme
+    if not isinstance(programme, Displace | Lateral | Rotate):
         return {
             "installed": _release_figures(installed.curve),
             "wished_in_place": _release_figures(wished.curve),
         }
     figures = {
-        "installed": _curve_figures(installed.curve, pile_width),
-        "wished_in_place": _curve_figures(wished.curve, pile_width),
+        "installed": _curve_figures(installed, pile_width),
+        "wished_in_place": _curve_figures(wished, pile_width),
     }
-    if installed.programme.start != "released":
+    if programme.start != RELEASED:
         return figures
     ratios = {
         name: _ratio(value, figures["wished_in_place"][name])
@@ -102,12 +117,15 @@ def programme_figures(
     return {**figures, "ratio": {names[name]: value for name, value in ratios.items()}}
 
 
-def _curve_figures(curve: Curve, pile_width: float) -> dict[str, float | None]:
-    found = characteristics(curve, pile_width)
+def _curve_figures(result: ProgrammeResult, pile_width: float) -> dict[str, float | None]:
+    """Return stiffness and capacities; those of a rotation are moments, at 0.1 rad."""
+    is_turned = isinstance(result.programme, Rotate)
+    found = characteristics(result.curve, 1.0 if is_turned else pile_width)
+    stiffness, load = ("N m/rad", "N m") if is_turned else ("N/m", "N")
     return {
-        "initial_stiffness_N/m": found.initial_stiffness,
-        "capacity_N": found.capacity,
-        "tangent_capacity_N": found.tangent_capacity,
+        f"initial_stiffness_{stiffness}": found.initial_stiffness,
+        f"capacity_{load}": found.capacity,
+        f"tangent_capacity_{load}": found.tangent_capacity,
     }
 
 
@@ -123,14 +141,14 @@ def _ratio(installed: float | None, wished: float | None) -> float | None:
 
 
 def continuity_figures(
-    case: Case, installed: InstalledState, service: ServiceResult
+    case: AnyCase, installed: InstalledState, service: ServiceResult
 ) -> dict[str, Any]:
     """Return the resistance to being pushed on over the crowd force at the end of jacking.
 
     Taken from every downward programme that starts from the equilibrated state, as far as it goes;
-    empty if the pile was not jacked.
+    empty if the pile was not moved.
     """
-    force = float(installed.history.crowd_force[-1])
+    force = installation_figures(installed)["crowd_force_N"]
     if float(installed.pile.penetration) == 0.0 or force == 0.0:
         return {}
     width = case.pile.width

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import TYPE_CHECKING
 
 from install_mpm.conventions import Kinematics
-from service_fe.options import Release
+from service_fe.loading import contradiction
+from service_fe.options import IN_THE_PLANE, ServiceOptions
 from workflows.errors import CaseError
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def check(case: Case) -> None:
     _check_mesh_sizes(case)
     _check_headroom(case)
     _check_step(case)
-    _check_programmes(case)
+    check_programmes(case.service, case.kinematics)
     check_interface(case)
     check_solver(case)
 
@@ -179,31 +179,26 @@ def check_interface(case: Case | ScrewCase) -> None:
         )
 
 
-def _check_programmes(case: Case) -> None:
-    programmes = case.service.programmes
-    if not programmes:
+def check_programmes(service: ServiceOptions, kinematics: Kinematics) -> None:
+    """Check the programmes of the service stage against each other and the kind of pile.
+
+    Raises
+    ------
+    CaseError
+        At the first contradiction.
+    """
+    if not service.programmes:
         raise CaseError(
             "service.programmes is empty; add at least one [[service.programmes]] table"
         )
-    names = Counter(programme.name for programme in programmes)
-    for name, count in names.items():
-        if count > 1:
+    wrong = contradiction(service.programmes)
+    if wrong is not None:
+        raise CaseError(f"service.programmes: {wrong}")
+    for programme in service.programmes:
+        if kinematics != Kinematics.THREE_D and not isinstance(programme, IN_THE_PLANE):
             raise CaseError(
-                f"service.programmes: {count} programmes are named {name!r}; "
-                "give each a name of its own"
-            )
-    is_released = False
-    for programme in programmes:
-        if isinstance(programme, Release):
-            is_released = True
-        elif programme.displacement == 0.0:
-            raise CaseError(
-                f"service.programmes: {programme.name!r} has no displacement; give it one"
-            )
-        elif programme.start == "released" and not is_released:
-            raise CaseError(
-                f"service.programmes: {programme.name!r} starts from the released pile; put a "
-                'programme of kind "release" before it, or set start = "equilibrated"'
+                f"service.programmes: {programme.name!r} is of kind {programme.kind!r}, which is "
+                'for a pile in space; use "release" or "displace", or a screw pile'
             )
 
 

@@ -16,8 +16,11 @@ from install_mpm.material_points import cauchy_stress, plane_area
 from install_mpm.state_file import InstalledState
 from service_fe.results import ServiceResult
 
-VTK_NAMES = {3: "triangle", 6: "triangle6"}
+VTK_NAMES = {3: "triangle", 6: "triangle6", 10: "tetra10"}
 """Names of cells by their number of nodes."""
+
+VTK_ORDER = {10: [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]}
+"""Nodes of a cell in the order of VTK, where that is another one."""
 
 PARAVIEW_ORDER = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 
@@ -65,7 +68,8 @@ def export_service(path: Path, result: ServiceResult) -> None:
         point_data[f"displacement_{name}"] = _in_3d(entry.soil.displacement)
         cell_data[f"cauchy_stress_{name}"] = [_six(stress)]
         cell_data[f"mean_pressure_{name}"] = [_mean_pressure(stress)]
-    cells = [("triangle6", mesh.cell_nodes)]
+    n_nodes = mesh.cell_nodes.shape[1]
+    cells = [(VTK_NAMES[n_nodes], mesh.cell_nodes[:, VTK_ORDER.get(n_nodes, range(n_nodes))])]
     _write(path, meshio.Mesh(_in_3d(mesh.nodes), cells, point_data=point_data, cell_data=cell_data))
 
 

@@ -20,7 +20,7 @@ from rich.progress import (
 from workflows.report_units import FORCE_UNIT
 
 if TYPE_CHECKING:
-    from workflows.case import Case
+    from workflows.case import AnyCase
 
 Advance = Callable[[int, int, str], None]
 """Show that ``done`` of ``total`` steps are complete, with a short note."""
@@ -30,11 +30,12 @@ def no_progress(_done: int, _total: int, _note: str) -> None:
     """Show nothing."""
 
 
-def service_observer(case: Case, advance: Advance) -> Callable[[Any], None]:
+def service_observer(case: AnyCase, advance: Advance) -> Callable[[Any], None]:
     """Return an observer of the service stage that shows all programmes as one count.
 
     Each programme counts as 100, because its number of steps is not known before it starts.
     """
+    assert case.service is not None
     n_programmes, unit = len(case.service.programmes), FORCE_UNIT[case.kinematics]
     finished = 0
 

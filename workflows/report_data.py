@@ -52,12 +52,12 @@ def read_results(directory: Path) -> Results:
         handed_off=read_checked(directory, names.HANDED_OFF, case),
         service=read_checked(directory, names.SERVICE, case),
         wished=read_checked(directory, names.WISHED_SERVICE, case),
-        certificate=_read_json(directory / names.CERTIFICATE, "screwpile handoff"),
-        summary=_read_json(directory / names.SUMMARY, "screwpile compare"),
+        certificate=read_json(directory / names.CERTIFICATE, "screwpile handoff"),
+        summary=read_json(directory / names.SUMMARY, "screwpile compare"),
     )
 
 
-def _read_json(path: Path, command: str) -> dict[str, Any]:
+def read_json(path: Path, command: str) -> dict[str, Any]:
     """Return the content of a JSON file that ``command`` writes.
 
     Raises

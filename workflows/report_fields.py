@@ -11,7 +11,6 @@ from matplotlib.patches import Rectangle
 from scipy.spatial import cKDTree
 
 from handoff.fe_mesh import FEMesh
-from handoff.geostatic import VERTICAL
 from handoff.surface import height_at, surface_profile
 from install_mpm.geostatic import named_state
 from install_mpm.ground import GroundProfile, geostatic_stress
@@ -180,7 +179,7 @@ def _round_up(value: float) -> float:
 
 def pressure_change(ground: GroundProfile, stress: np.ndarray, height: np.ndarray) -> np.ndarray:
     """Return the change of mean pressure (n,) in kPa, compression positive."""
-    change = stress - geostatic_stress(ground, height, VERTICAL)
+    change = stress - geostatic_stress(ground, height, vertical=1)
     pressure: np.ndarray = -np.trace(change, axis1=1, axis2=2) / 3.0 / 1e3
     return pressure
 

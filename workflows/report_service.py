@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from install_mpm.conventions import Kinematics
 from install_mpm.geostatic import named_state
 from install_mpm.ground import GroundProfile
 from install_mpm.state_file import InstalledState
-from service_fe.options import Displace, Release
+from service_fe.loading import RELEASED
+from service_fe.options import Displace, Lateral, Load, Programme, Release, Rotate
 from service_fe.results import (
     CAPACITY_DISPLACEMENT,
     Curve,
@@ -20,7 +22,7 @@ from service_fe.results import (
     characteristics,
     head_load_at,
 )
-from workflows.case import Case
+from workflows.case import AnyCase, Case
 from workflows.compare import CONTINUITY_SHARES
 from workflows.report_fields import (
     colour_bar,
@@ -49,7 +51,28 @@ STRAIN_NORM = Normalize(0.0, 10.0)
 """Plastic shear strains are shown up to 10 %."""
 
 
-def curves(case: Case, service: ServiceResult, wished: ServiceResult) -> Figure:
+class Shown(NamedTuple):
+    """How the curve of a programme is drawn."""
+
+    displacement: float
+    """Factor to the display unit of the displacement."""
+    displacement_label: str
+    load_label: str
+
+
+def shown_as(programme: Programme, kinematics: Kinematics) -> Shown:
+    """Return factor and labels of the curve of a programme; loads are shown in thousands."""
+    force = FORCE_UNIT[kinematics]
+    if isinstance(programme, Rotate):
+        return Shown(180.0 / np.pi, "rotation (°)", f"moment ({force} m)")
+    if isinstance(programme, Lateral) or getattr(programme, "component", "") == "lateral":
+        return Shown(1e3, "displacement of the head, sideways (mm)", f"lateral load ({force})")
+    if isinstance(programme, Load):
+        return Shown(1e3, "displacement along the leading load (mm)", f"leading load ({force})")
+    return Shown(1e3, "displacement, downward (mm)", f"head load ({force})")
+
+
+def curves(case: AnyCase, service: ServiceResult, wished: ServiceResult) -> Figure:
     """Return head load against displacement of every programme, installed and wished in place."""
     columns = 2
     rows = -(-len(service.programmes) // columns)
@@ -59,9 +82,10 @@ def curves(case: Case, service: ServiceResult, wished: ServiceResult) -> Figure:
     for here, result in zip(axes.flat, service.programmes, strict=False):
         for model in (service, wished):
             _draw_curve(here, model.model, model.programme(result.programme.name), case)
+        labels = shown_as(result.programme, case.kinematics)
         here.set(
-            xlabel="displacement, downward (mm)",
-            ylabel=f"head load ({FORCE_UNIT[case.kinematics]})",
+            xlabel=labels.displacement_label,
+            ylabel=labels.load_label,
             title=_title(result),
         )
         here.axhline(0.0, color=MUTED, linewidth=0.6)
@@ -76,18 +100,20 @@ def _title(result: ProgrammeResult) -> str:
     return name if start is None else f"{name}, from the {start} pile"
 
 
-def _draw_curve(axes: Any, model: str, result: ProgrammeResult, case: Case) -> None:
+def _draw_curve(axes: Any, model: str, result: ProgrammeResult, case: AnyCase) -> None:
     """Draw one curve with its capacities: dot at 0.1 widths, cross where the tangents meet."""
     curve, colour = result.curve, MODEL_COLOURS[model]
+    factor = shown_as(result.programme, case.kinematics).displacement
     axes.plot(
-        1e3 * curve.displacement,
+        factor * curve.displacement,
         curve.head_load / 1e3,
         ".-",
         color=colour,
         label=MODEL_NAMES[model],
         markersize=3.0,
     )
-    if not isinstance(result.programme, Displace) or result.programme.start != "released":
+    programme = result.programme
+    if not isinstance(programme, Displace | Lateral) or programme.start != RELEASED:
         return
     width = case.pile.width
     found = characteristics(curve, width)

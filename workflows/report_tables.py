@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any, get_args, get_type_hints
 
 from install_mpm.conventions import Kinematics, Unit
-from service_fe.options import Displace, Programme
+from service_fe.options import Displace, Programme, Release
 from workflows.case import Case
 from workflows.report_data import Results
 from workflows.report_html import Cell, badge, cell, number, table
@@ -106,8 +106,12 @@ def case_tables(case: Case) -> str:
 
 def _programme_row(programme: Programme) -> Row:
     """Return what a programme of the service stage does to the pile."""
-    if not isinstance(programme, Displace):
+    if isinstance(programme, Release):
         return [spaced(programme.name), f"head load to zero in {programme.steps} steps"]
+    if not isinstance(programme, Displace):
+        rows = [(cell(row[0]).html, cell(row[1]).html) for row in option_rows(programme)]
+        options = ", ".join(f"{name} {value}" for name, value in rows if name != "name")
+        return [spaced(programme.name), Cell(options)]
     direction = "down" if programme.displacement > 0.0 else "up"
     distance = f"{1e3 * abs(programme.displacement):g} mm {direction}"
     return [spaced(programme.name), f"{distance}, from the {programme.start} pile"]

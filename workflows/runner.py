@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 
@@ -91,7 +91,7 @@ STAGES = (
 )  # fmt: skip
 
 
-SCREW_STAGES = (
+INSTALL_SCREW, EXPORT_SCREW, REPORT_SCREW = (
     Stage(
         "install", "screwpile install CASE", "screw the pile into the ground", names.INSTALL_KEYS,
         reads=(), writes=(names.INSTALLED,),
@@ -110,12 +110,31 @@ SCREW_STAGES = (
         reads=(names.INSTALLED,), writes=(names.REPORT,), sources=("workflows",),
     ),
 )  # fmt: skip
-"""Stages of a screw pile."""
+
+SCREW_STAGES = (INSTALL_SCREW, EXPORT_SCREW, REPORT_SCREW)
+"""Stages of a screw pile that is installed only."""
+
+SCREW_SERVICE_STAGES = (
+    INSTALL_SCREW,
+    *(stage for stage in STAGES if stage.name in ("hand_off", "serve", "wished", "compare")),
+    replace(
+        EXPORT_SCREW, keys=names.SERVICE_KEYS,
+        reads=(names.INSTALLED, names.SERVICE, names.WISHED_SERVICE),
+        writes=(*names.SCREW_VIEWS, names.VIEW_INSTALLED, names.VIEW_WISHED),
+    ),
+    replace(
+        REPORT_SCREW, keys=("title", *names.SERVICE_KEYS),
+        reads=next(stage.reads for stage in STAGES if stage.name == "report"),
+    ),
+)  # fmt: skip
+"""Stages of a screw pile that is loaded in service."""
 
 
 def stages_of(case: AnyCase) -> tuple[Stage, ...]:
     """Return the stages of a case, in order."""
-    return SCREW_STAGES if isinstance(case, ScrewCase) else STAGES
+    if not isinstance(case, ScrewCase):
+        return STAGES
+    return SCREW_STAGES if case.service is None else SCREW_SERVICE_STAGES
 
 
 def stage_named(name: str, case: AnyCase) -> Stage:
@@ -130,7 +149,9 @@ def stage_named(name: str, case: AnyCase) -> Stage:
         if stage.name == name:
             return stage
     known = ", ".join(stage.name for stage in stages_of(case))
-    raise CaseError(f"{case.title}: there is no stage {name!r} for a screw pile; it has {known}")
+    raise CaseError(
+        f"{case.title}: there is no stage {name!r} without [handoff] and [service]; it has {known}"
+    )
 
 
 def inputs_of(stage: Stage, case: AnyCase, directory: Path) -> dict[str, str]:

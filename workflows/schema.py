@@ -215,9 +215,11 @@ def item_type(hint: Any) -> Any:
 
 
 def alternatives_of(hint: Any) -> tuple[Any, ...]:
-    """Return the members of a union, or the one type that ``hint`` is."""
+    """Return the members of a union but None, or the one type that ``hint`` is."""
     bare = get_args(hint)[0] if get_origin(hint) is Annotated else hint
-    return get_args(bare) if get_origin(bare) in (Union, types.UnionType) else (bare,)
+    if get_origin(bare) not in (Union, types.UnionType):
+        return (bare,)
+    return tuple(member for member in get_args(bare) if member is not types.NoneType)
 
 
 def is_enumeration(hint: Any) -> bool:

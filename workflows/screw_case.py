@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from handoff.options import HandoffOptions
+from handoff.screw_mesh import largest_size
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import GroundProfile
@@ -19,7 +21,13 @@ from install_mpm.screw_programme import (
     phase_motion,
     rim_radius,
 )
-from workflows.cross_checks import check_ground, check_interface, check_solver
+from service_fe.options import ServiceOptions
+from workflows.cross_checks import (
+    check_ground,
+    check_interface,
+    check_programmes,
+    check_solver,
+)
 from workflows.errors import CaseError
 
 LARGEST_ON_PLATE = 3.5
@@ -52,6 +60,9 @@ class ScrewCase:
     background_mesh: ScrewMeshOptions
     installation: ScrewProgramme
     numerics: Numerics
+    handoff: HandoffOptions | None = None
+    """Without it and ``service`` the run ends after the installation."""
+    service: ServiceOptions | None = None
 
     @property
     def final_tip_depth(self) -> float:
@@ -76,6 +87,30 @@ def check_screw_case(case: ScrewCase) -> None:
     check_ground(case)
     check_interface(case)
     check_solver(case)
+    _check_service(case)
+
+
+def _check_service(case: ScrewCase) -> None:
+    if (case.handoff is None) != (case.service is None):
+        given, missing = ("service", "handoff") if case.handoff is None else ("handoff", "service")
+        raise CaseError(
+            f"[{given}] is there without [{missing}]; give both to load the pile in service, or "
+            "neither to stop after the installation"
+        )
+    if case.handoff is None or case.service is None:
+        return
+    check_programmes(case.service, case.kinematics)
+    limit = largest_size(case.pile)
+    if case.handoff.size_at_pile > limit:
+        raise CaseError(
+            f"handoff.size_at_pile {case.handoff.size_at_pile:g} m cannot hold the shaft and the "
+            f"plates of the pile; take at most {limit:g} m"
+        )
+    if case.handoff.size_far < case.handoff.size_at_pile:
+        raise CaseError(
+            f"handoff.size_far {case.handoff.size_far:g} m is smaller than handoff.size_at_pile "
+            f"{case.handoff.size_at_pile:g} m; exchange the two"
+        )
 
 
 def _check_helices(pile: ScrewPile) -> None:

@@ -13,6 +13,7 @@ from install_mpm.interface import InterfacePoints
 from install_mpm.state_file import InstalledState
 from workflows import screw_report_curves as curves
 from workflows import screw_report_ground as ground
+from workflows import screw_report_service as in_service
 from workflows.directory import REPORT, TIMING, write_text
 from workflows.report import filled_page
 from workflows.report_html import code, details, figure
@@ -54,6 +55,30 @@ def write_screw_report(directory: Path, case: ScrewCase, installed: InstalledSta
 
 def sections(directory: Path, case: ScrewCase, installed: InstalledState) -> list[Section]:
     """Return all sections of the report, in order."""
+    parts = _installation_sections(directory, case, installed)
+    if case.service is None:
+        return parts
+    files = in_service.read_service_files(directory, case)
+    first = parts[0]._replace(
+        html=in_service.warning_html(files)
+        + parts[0].html
+        + "<h3>Installed against wished in place</h3>"
+        + in_service.comparison_table(files)
+    )
+    return [
+        first,
+        *parts[1:-2],
+        Section("handoff", "Hand-over", in_service.handoff_html(case, installed, files)),
+        Section("service", "Service", in_service.service_html(case, files)),
+        *parts[-2:],
+        Section("provenance", "Provenance", in_service.provenance_html(files)),
+    ]
+
+
+def _installation_sections(
+    directory: Path, case: ScrewCase, installed: InstalledState
+) -> list[Section]:
+    """Return the sections on the installation, the last two on checks and method."""
     return [
         Section("results", "Results", results_html(case, installed)),
         Section("case", "The case", case_html(case, installed)),

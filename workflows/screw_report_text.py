@@ -99,3 +99,27 @@ figures.</li>
 <li>Pressures of single material points scatter more than forces, which are sums over many.</li>
 </ul>
 """
+
+SERVICE_CAPTIONS = {
+    "handed_off": """Change of mean pressure against undisturbed ground in the vertical plane
+        through the axis, in the finite elements. Left: the installed state after the hand-over, in
+        equilibrium. Right: the pile wished in place, at the end of its last programme. Each pixel
+        shows its nearest integration point.""",
+    "curves": """Load of the structure on the head against its displacement, for the whole pile:
+        the installed pile and the same pile wished in place, in the same programme. Dot: capacity
+        at a displacement of 0.1 diameters of the largest plate. Cross: where initial and final
+        tangent meet.""",
+}
+
+SERVICE_LIMITS = """
+<h3>What limits the results in service</h3>
+<ul>
+<li>Strains in service are small: the mesh does not follow the pile.</li>
+<li>The ratio installed over wished in place is a prediction. No published measurement settles it;
+what is known is told on the page of verification.</li>
+<li>One mesh and one way of carrying the stress over give one answer: repeat the run with another
+<code>handoff.size_at_pile</code> and another <code>handoff.neighbours</code>, and take the
+spread as the uncertainty of the ratio.</li>
+<li>In compression and uplift the head is guided: it neither turns nor moves sideways.</li>
+</ul>
+"""

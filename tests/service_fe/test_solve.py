@@ -128,7 +128,7 @@ def test_step_that_fails_after_all_cuts_is_never_accepted(make_pile_problem, und
     [
         ([Displace("push", 0.1, 0.01)], 'kind "release" before it'),
         ([Displace("push", 0.0, 0.01, "equilibrated")], "has no displacement"),
-        ([Release("one"), Release("one")], "two programmes are called 'one'"),
+        ([Release("one"), Release("one")], "2 programmes are named 'one'"),
         ([Displace("push", 0.1, 0.01, "later")], "starts from 'later', which is not before it"),
     ],
 )

@@ -1,5 +1,6 @@
 """Case files of screw piles: what is read, and what is refused before anything is meshed."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ from install_mpm.conventions import Kinematics
 from workflows.case import case_text, parse_case, read_case
 from workflows.errors import CaseError
 from workflows.runner import stage_named, stages_of
-from workflows.screw_case import ScrewCase
+from workflows.screw_case import ScrewCase, check_screw_case
 
 CASES = Path(__file__).parents[2] / "cases"
 QUICK = CASES / "screwpile_quick.toml"
@@ -24,14 +25,26 @@ def test_every_case_is_valid_and_its_text_reads_back(path):
     assert case_text(case) == text
 
 
-def test_the_stages_of_a_screw_pile_begin_with_the_installation():
+def test_a_screw_pile_has_the_stages_of_its_case():
     case, _ = read_case(QUICK)
-    assert stages_of(case)[0].name == "install"
-    with pytest.raises(CaseError, match="there is no stage 'serve'"):
-        stage_named("serve", case)
+    assert [stage.name for stage in stages_of(case)] == [
+        "install", "hand_off", "serve", "wished", "compare", "export", "report"
+    ]  # fmt: skip
+    alone = replace(case, handoff=None, service=None)
+    assert [stage.name for stage in stages_of(alone)] == ["install", "export", "report"]
+    with pytest.raises(CaseError, match=r"no stage 'serve' without \[handoff\] and \[service\]"):
+        stage_named("serve", alone)
+    with pytest.raises(CaseError, match=r"\[service\] is there without \[handoff\]"):
+        check_screw_case(replace(case, handoff=None))
 
 
 REFUSED = {
+    "finite elements larger than the plate can hold": (
+        ["handoff.size_at_pile='0.5 m'"], "take at most 0.25 m"
+    ),
+    "programme that starts from nothing": (
+        ["service.programmes.lateral.start='push'"], "which is not before it"
+    ),
     "plate thinner than the mesh can hold": (
         ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='20 mm', height='0.25 m'}]"],
         "cannot hold a plate 0.02 m thick",

@@ -13,7 +13,7 @@ from pathlib import Path
 from install_mpm.state_file import InstalledState, case_hash
 from service_fe.results import ServiceResult
 from workflows import directory as names
-from workflows.case import Case, case_text
+from workflows.case import AnyCase, case_text
 from workflows.compare import convergence, curves_csv, headline
 from workflows.directory import write_text
 from workflows.errors import DirectoryError
@@ -24,7 +24,7 @@ from workflows.state_files import read_checked
 HASHED = (names.INSTALLED, names.HANDED_OFF, names.SERVICE, names.WISHED_SERVICE, names.CURVES)
 
 
-def run(case: Case, directory: Path, _advance: Advance = no_progress) -> list[str]:
+def run(case: AnyCase, directory: Path, _advance: Advance = no_progress) -> list[str]:
     """Write the curves of both models and the summary.
 
     Raises

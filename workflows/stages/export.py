@@ -29,11 +29,13 @@ def run(case: AnyCase, directory: Path, _advance: Advance = no_progress) -> list
     installed = read_checked(directory, names.INSTALLED, case)
     if isinstance(case, ScrewCase):
         export_screw_pile(directory, installed)
-        return []
+        if case.service is None:
+            return []
     service = read_checked(directory, names.SERVICE, case)
     wished = read_checked(directory, names.WISHED_SERVICE, case)
-    export_material_points(directory / names.VIEW_POINTS, installed)
-    export_background_mesh(directory / names.VIEW_BACKGROUND, installed)
+    if not isinstance(case, ScrewCase):
+        export_material_points(directory / names.VIEW_POINTS, installed)
+        export_background_mesh(directory / names.VIEW_BACKGROUND, installed)
     export_service(directory / names.VIEW_INSTALLED, service)
     export_service(directory / names.VIEW_WISHED, wished)
     return []

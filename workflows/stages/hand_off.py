@@ -9,23 +9,21 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from handoff.fe_mesh import FEMesh
 from handoff.fe_state_file import write_handed_off_state
 from handoff.hand_over import hand_over
 from handoff.quality import as_json, failed_checks
-from install_mpm.pile import buried_weight
 from install_mpm.state_file import InstalledState
-from service_fe.problem import ServiceProblem
-from workflows.case import Case, case_text
+from workflows.case import AnyCase, case_text
 from workflows.directory import CERTIFICATE, HANDED_OFF, INSTALLED, write_text
 from workflows.manifest import created_by
+from workflows.placed import placed_pile, service_problem
 from workflows.progress import Advance, no_progress
 from workflows.state_files import read_checked
 
 PHASES = ("mesh", "transfer", "admissibility", "equilibration", "certificate")
 
 
-def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str]:
+def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[str]:
     """Hand over the installed state in ``directory``; return what the certificate objects to.
 
     Raises
@@ -37,23 +35,16 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     """
     installed: InstalledState = read_checked(directory, INSTALLED, case)
 
-    def make_problem(mesh: FEMesh) -> ServiceProblem:
-        weight = buried_weight(
-            case.pile, float(installed.pile.tip_depth), case.kinematics, case.ground.water_table
-        )
-        return ServiceProblem(
-            mesh, case.ground, case.interface, weight, case.service.numerics,
-            kinematics=case.kinematics,
-        )  # fmt: skip
-
+    assert case.handoff is not None
+    placed = placed_pile(case, float(installed.pile.tip_depth), float(installed.pile.rotation))
     handed_off, certificate = hand_over(
         installed,
         case.ground,
-        case.pile,
+        placed,
         case.box,
         case.interface,
         case.handoff,
-        make_problem,
+        lambda mesh: service_problem(case, placed, mesh),
         observe=lambda phase: advance(PHASES.index(phase), len(PHASES), phase),
     )
     handed_off = handed_off._replace(case_text=case_text(case))

@@ -12,19 +12,18 @@ from pathlib import Path
 import numpy as np
 
 from handoff.fe_state_file import HandedOffState
-from install_mpm.pile import buried_weight
-from service_fe.problem import ServiceProblem
 from service_fe.result_file import write_service_result
 from service_fe.results import ServiceResult
 from service_fe.solve import run as run_programmes
-from workflows.case import Case, case_text
+from workflows.case import AnyCase, case_text
 from workflows.directory import HANDED_OFF, SERVICE
 from workflows.manifest import created_by
+from workflows.placed import placed_pile, service_problem
 from workflows.progress import Advance, no_progress, service_observer
 from workflows.state_files import read_checked
 
 
-def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str]:
+def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[str]:
     """Run the programmes of ``case`` on the handed-off state in ``directory``.
 
     Raises
@@ -35,13 +34,10 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
         If a step does not converge; nothing is written.
     """
     handed_off: HandedOffState = read_checked(directory, HANDED_OFF, case)
-    weight = buried_weight(
-        case.pile, float(handed_off.pile.tip_depth), case.kinematics, case.ground.water_table
-    )
-    problem = ServiceProblem(
-        handed_off.mesh, case.ground, case.interface, weight, case.service.numerics,
-        kinematics=case.kinematics,
-    )  # fmt: skip
+    assert case.service is not None
+    pile = handed_off.pile
+    placed = placed_pile(case, float(pile.tip_depth), float(pile.rotation))
+    problem = service_problem(case, placed, handed_off.mesh)
     result = run_programmes(
         problem,
         handed_off.state,

@@ -9,21 +9,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from handoff.fe_mesh import make_mesh
 from handoff.surface import level_surface
 from install_mpm.ground import boundary_depths
-from install_mpm.pile import buried_weight
-from service_fe.problem import ServiceProblem
 from service_fe.result_file import write_service_result
 from service_fe.solve import run as run_programmes
-from workflows.case import Case, case_text
+from workflows.case import AnyCase, case_text
 from workflows.directory import WISHED, WISHED_SERVICE
 from workflows.manifest import created_by
+from workflows.placed import pile_at_end, service_problem
 from workflows.progress import Advance, no_progress, service_observer
 from workflows.stages.serve import settled_notes
 
 
-def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str]:
+def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[str]:
     """Run the programmes of ``case`` on the pile wished in place at its final depth.
 
     Raises
@@ -33,14 +31,11 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
     ServiceError
         If a step does not converge; nothing is written.
     """
-    depth = case.final_tip_depth
-    layers = boundary_depths(case.ground)
-    mesh = make_mesh(case.pile, depth, case.box, case.handoff, level_surface(), layers)
-    weight = buried_weight(case.pile, depth, case.kinematics, case.ground.water_table)
-    problem = ServiceProblem(
-        mesh, case.ground, case.interface, weight, case.service.numerics,
-        kinematics=case.kinematics,
-    )  # fmt: skip
+    assert case.handoff is not None
+    assert case.service is not None
+    placed = pile_at_end(case)
+    mesh = placed.mesh(case.box, case.handoff, level_surface(), boundary_depths(case.ground))
+    problem = service_problem(case, placed, mesh)
     result = run_programmes(
         problem,
         problem.wished_in_place_state(),

@@ -1,0 +1,44 @@
+"""The pile of a case at its place in the ground, and its finite-element model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from handoff.placed_pile import PlacedFlatPile, PlacedPile, PlacedScrewPile
+from install_mpm.screw_programme import pose_at, total_travel
+from workflows.case import AnyCase
+from workflows.screw_case import ScrewCase
+
+if TYPE_CHECKING:
+    from handoff.fe_mesh import FEMesh
+    from service_fe.problem import ServiceProblem
+
+
+def placed_pile(case: AnyCase, tip_depth: float, rotation: float) -> PlacedPile:
+    """Return the pile with its tip ``tip_depth`` m deep, turned by ``rotation`` in rad."""
+    if isinstance(case, ScrewCase):
+        return PlacedScrewPile(replace(case.pile, embedment=tip_depth), rotation)
+    return PlacedFlatPile(case.pile, tip_depth, case.kinematics)
+
+
+def pile_at_end(case: AnyCase) -> PlacedPile:
+    """Return the pile at the end of the programme of its installation.
+
+    When the rig lets go of a screw pile it springs back a little from there.
+    """
+    if not isinstance(case, ScrewCase):
+        return placed_pile(case, case.final_tip_depth, 0.0)
+    end = pose_at(case.pile, case.installation, total_travel(case.pile, case.installation))
+    return placed_pile(case, case.pile.embedment + end.advance, end.rotation)
+
+
+def service_problem(case: AnyCase, placed: PlacedPile, mesh: FEMesh) -> ServiceProblem:
+    """Return the finite-element model of the pile on a ``mesh`` of the soil around it."""
+    from service_fe.problem import ServiceProblem
+
+    assert case.service is not None
+    return ServiceProblem(
+        mesh, case.ground, case.interface, placed.weight(case.ground.water_table),
+        case.service.numerics, kinematics=placed.kinematics, normals=placed.normals,
+    )  # fmt: skip

@@ -1,0 +1,191 @@
+"""Sections of the report of a screw pile in service: results, hand-over, curves, pictures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from handoff.fe_state_file import FEIntegrationPoints, FEState
+from install_mpm.conventions import Kinematics
+from install_mpm.state_file import InstalledState
+from service_fe.results import ServiceResult
+from workflows import directory as names
+from workflows.report_data import read_json
+from workflows.report_fields import colour_bar, symmetric_norm
+from workflows.report_html import Cell, details, figure, number, table
+from workflows.report_service import curves
+from workflows.report_style import DIVERGING, INK, panels
+from workflows.report_tables import (
+    MODELS,
+    certificate_table,
+    convergence_table,
+    group_row,
+    hash_table,
+    spaced,
+    timing_table,
+    version_table,
+)
+from workflows.report_units import significant
+from workflows.screw_case import ScrewCase
+from workflows.screw_frames import PointCloud
+from workflows.screw_report_ground import pose_of
+from workflows.screw_report_text import SERVICE_CAPTIONS, SERVICE_LIMITS
+from workflows.screw_slices import (
+    draw_slice,
+    mean_pressure_change,
+    soil_pixels,
+    vertical_slice,
+)
+from workflows.state_files import read_checked
+
+SPACE = Kinematics.THREE_D
+
+UNIT_NAMES = {"N/m": "kN/mm", "N": "kN", "N m/rad": "kN m/rad", "N m": "kN m"}
+SCALES = {"N/m": 1e-6, "N": 1e-3, "N m/rad": 1e-3, "N m": 1e-3}
+
+
+class ServiceFiles(NamedTuple):
+    """What the stages after the installation left in a results directory."""
+
+    handed_off: Any
+    service: ServiceResult
+    wished: ServiceResult
+    certificate: dict[str, dict[str, Any]]
+    summary: dict[str, Any]
+
+
+def read_service_files(directory: Path, case: ScrewCase) -> ServiceFiles:
+    """Return the results of the stages after the installation.
+
+    Raises
+    ------
+    StateFileError, DirectoryError
+        If a file is missing or damaged, or belongs to another case.
+    """
+    return ServiceFiles(
+        handed_off=read_checked(directory, names.HANDED_OFF, case),
+        service=read_checked(directory, names.SERVICE, case),
+        wished=read_checked(directory, names.WISHED_SERVICE, case),
+        certificate=read_json(directory / names.CERTIFICATE, "screwpile handoff"),
+        summary=read_json(directory / names.SUMMARY, "screwpile compare"),
+    )
+
+
+def warning_html(files: ServiceFiles) -> str:
+    """Return what a reader must know first: how many checks of the certificate failed."""
+    n_failed = sum(not entry["is_met"] for entry in files.certificate.values())
+    if not n_failed:
+        return ""
+    return (
+        f'<p class="warning">Checks of the certificate that failed: {n_failed}. Look at '
+        '<a href="#handoff">Hand-over</a> before using the results in service.</p>'
+    )
+
+
+def comparison_table(files: ServiceFiles) -> str:
+    """Return stiffness and capacities of both models in every programme, and their ratio."""
+    head: list[str | Cell] = ["", *map(number, ("installed", "wished in place", "ratio"))]
+    rows: list[list[str | Cell]] = []
+    for name, programme in files.summary["results"]["service"].items():
+        if "ratio" not in programme:
+            continue
+        rows.append(group_row(spaced(name)))
+        for key, ratio in programme["ratio"].items():
+            unit = next(k for k in programme["installed"] if k.startswith(f"{key}_"))
+            unit = unit.removeprefix(f"{key}_")
+            values = [programme[model][f"{key}_{unit}"] for model in MODELS]
+            rows.append(
+                [
+                    f"{spaced(key)} ({UNIT_NAMES[unit]})",
+                    *(number(_scaled(value, unit)) for value in values),
+                    number("–" if ratio is None else significant(ratio, 3)),
+                ]
+            )
+    return table(head, rows)
+
+
+def _scaled(value: float | None, unit: str) -> str:
+    return "–" if value is None else significant(SCALES[unit] * value, 4)
+
+
+def captioned(name: str, picture: Figure) -> str:
+    """Return a picture with the caption of its name."""
+    return figure(name, picture, " ".join(SERVICE_CAPTIONS[name].split()))
+
+
+def handoff_html(case: ScrewCase, installed: InstalledState, files: ServiceFiles) -> str:
+    """Return the stress handed over, and the certificate."""
+    return "\n".join(
+        [
+            captioned("handed_off", stress_picture(case, installed, files)),
+            "<h3>Certificate</h3>",
+            certificate_table(files.certificate, SPACE, with_limit=True),
+            details(
+                "Figures for information",
+                certificate_table(files.certificate, SPACE, with_limit=False),
+            ),
+        ]
+    )
+
+
+def stress_picture(case: ScrewCase, installed: InstalledState, files: ServiceFiles) -> Figure:
+    """Return the change of mean pressure in both models of the ground, in a vertical plane."""
+    plane = vertical_slice(
+        case.pile, float(installed.pile.tip_depth), case.box.headroom, case.box.width
+    )
+    left, right, bottom, top = plane.extent
+    figure_, axes = panels(1, 2, 10.0, 4.6 * (top - bottom) / (right - left) + 1.0, sharey=True)
+    handed_off = files.handed_off
+    clouds = (
+        fe_cloud(handed_off.integration, handed_off.state),
+        fe_cloud(files.wished.integration, files.wished.programmes[-1].state),
+    )
+    last = files.wished.programmes[-1].programme.name
+    titles = ("installed, handed over", f"wished in place, after {spaced(last)}")
+    norm = None
+    for here, cloud, title in zip(axes[0], clouds, titles, strict=True):
+        soil = soil_pixels(plane, cloud, case.pile, pose_of(installed))
+        change = mean_pressure_change(case.ground, cloud)
+        if norm is None:
+            norm = symmetric_norm(change[np.unique(soil.index[soil.index >= 0])])
+        drawn = draw_slice(here, plane, soil, change, norm, DIVERGING)
+        here.plot([left, right], [0.0, 0.0], color=INK, linewidth=0.7, dashes=(6, 4))
+        here.set(xlabel="x (m)", title=title)
+    axes[0, 0].set(ylabel="z (m)")
+    colour_bar(figure_, drawn, axes[0], "change of mean pressure (kPa)", "both")
+    return figure_
+
+
+def fe_cloud(integration: FEIntegrationPoints, state: FEState) -> PointCloud:
+    """Return the integration points of a finite-element model as points that pictures show."""
+    pressure = -np.trace(state.cauchy_stress, axis1=1, axis2=2) / 3.0
+    still = np.zeros_like(integration.position)
+    return PointCloud(integration.position, still, pressure, integration.volume)
+
+
+def service_html(case: ScrewCase, files: ServiceFiles) -> str:
+    """Return curves, figures, convergence and what limits them."""
+    return "\n".join(
+        [
+            captioned("curves", curves(case, files.service, files.wished)),
+            comparison_table(files),
+            "<h3>Convergence</h3>",
+            convergence_table(files.summary["convergence"]),
+            SERVICE_LIMITS,
+        ]
+    )
+
+
+def provenance_html(files: ServiceFiles) -> str:
+    """Return timings, versions, hashes and seeds."""
+    summary = files.summary
+    return "\n".join(
+        [
+            timing_table(summary["timings_s"]),
+            version_table(summary["versions"]),
+            hash_table(summary),
+        ]
+    )
