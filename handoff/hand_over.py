@@ -12,9 +12,11 @@ from handoff.fe_mesh import FEMesh
 from handoff.fe_state_file import (
     FEIntegrationPoints,
     FEInterfacePoints,
+    FEState,
     HandedOffPile,
     HandedOffState,
 )
+from handoff.geostatic import geostatic_state
 from handoff.interface_transfer import forces_on_pile
 from handoff.options import HandoffOptions
 from handoff.placed_pile import PlacedPile
@@ -86,6 +88,34 @@ def hand_over(
     )
     certificate = certify(evidence)
     return _handed_off(evidence, mesh, certificate), certificate
+
+
+def wished_in_place(
+    ground: GroundProfile,
+    interface: CoulombInterface,
+    problem: EquilibriumProblem,
+    options: HandoffOptions,
+) -> FEState:
+    """Return the state of a pile wished in place, admissible and in equilibrium as a handed-off one.
+
+    Undisturbed ground balances gravity.  Its traction on the plane facets of a curved surface can
+    exceed the slip limit, though, because it has a part along the exact surface.
+
+    Raises
+    ------
+    EquilibrationError
+        If what the slip limit takes away cannot be brought to equilibrium.
+    """
+    places = problem.interface_positions
+    undisturbed = geostatic_state(
+        ground,
+        problem.integration_positions,
+        places,
+        problem.interface_normals,
+        problem.interface_facet_normals,
+    )
+    state, _ = admissible_state(ground, interface, places, undisturbed)
+    return equilibrate(problem, state, options)[0]
 
 
 def _handed_off(evidence: Evidence, mesh: FEMesh, certificate: Certificate) -> HandedOffState:

@@ -29,7 +29,7 @@ SECTIONS = (
 
 NAMES = {
     "k0": "K₀", "youngs_modulus": "Young's modulus", "poissons_ratio": "Poisson's ratio",
-    "helices": "helix", "phases": "phase", "layers": "layer",
+    "helices": "helix", "phases": "phase", "layers": "layer", "programmes": "programme",
 }  # fmt: skip
 """Words for names of the code that do not read as such."""
 

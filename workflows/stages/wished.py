@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from handoff.hand_over import wished_in_place
 from handoff.surface import level_surface
 from install_mpm.ground import boundary_depths
 from service_fe.result_file import write_service_result
@@ -26,8 +27,8 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
 
     Raises
     ------
-    MeshError
-        If the ground cannot be meshed.
+    MeshError, EquilibrationError
+        If the ground cannot be meshed or brought to equilibrium.
     ServiceError
         If a step does not converge; nothing is written.
     """
@@ -38,7 +39,7 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     problem = service_problem(case, placed, mesh)
     result = run_programmes(
         problem,
-        problem.wished_in_place_state(),
+        wished_in_place(case.ground, case.interface, problem, case.handoff),
         case.service.programmes,
         service_observer(case, advance),
         model="wished_in_place",
