@@ -96,7 +96,7 @@ def wished_in_place(
     problem: EquilibriumProblem,
     options: HandoffOptions,
 ) -> FEState:
-    """Return the state of a pile wished in place, admissible and in equilibrium as a handed-off one.
+    """Return the state of a pile wished in place: admissible and balanced, as a handed-off one is.
 
     Undisturbed ground balances gravity.  Its traction on the plane facets of a curved surface can
     exceed the slip limit, though, because it has a part along the exact surface.
