@@ -86,7 +86,7 @@ def curves(case: AnyCase, service: ServiceResult, wished: ServiceResult) -> Figu
         here.set(
             xlabel=labels.displacement_label,
             ylabel=labels.load_label,
-            title=_title(result),
+            title=title_of(result),
         )
         here.axhline(0.0, color=MUTED, linewidth=0.6)
         grid(here)
@@ -94,14 +94,15 @@ def curves(case: AnyCase, service: ServiceResult, wished: ServiceResult) -> Figu
     return figure
 
 
-def _title(result: ProgrammeResult) -> str:
+def title_of(result: ProgrammeResult) -> str:
+    """Return the name of a programme and the pile that it starts from."""
     start = getattr(result.programme, "start", None)
     name = result.programme.name.replace("_", " ")
     return name if start is None else f"{name}, from the {start} pile"
 
 
 def _draw_curve(axes: Any, model: str, result: ProgrammeResult, case: AnyCase) -> None:
-    """Draw one curve with its capacities: dot at 0.1 widths, cross where the tangents meet."""
+    """Draw one curve with its capacities."""
     curve, colour = result.curve, MODEL_COLOURS[model]
     factor = shown_as(result.programme, case.kinematics).displacement
     axes.plot(
@@ -112,18 +113,36 @@ def _draw_curve(axes: Any, model: str, result: ProgrammeResult, case: AnyCase) -
         label=MODEL_NAMES[model],
         markersize=3.0,
     )
+    for mark in capacity_marks(result, case.pile.width):
+        size = {"markersize": 7.0, "clip_on": False}
+        axes.plot(1e3 * mark.displacement, mark.head_load / 1e3, mark.symbol, color=colour, **size)
+
+
+class CapacityMark(NamedTuple):
+    """Where a curve reaches a capacity."""
+
+    displacement: float
+    """In m."""
+    head_load: float
+    """In N."""
+    symbol: str
+    """Dot at 0.1 widths, cross where the tangents meet."""
+
+
+def capacity_marks(result: ProgrammeResult, width: float) -> list[CapacityMark]:
+    """Return the capacities of a programme that displaces the released pile of ``width`` in m."""
     programme = result.programme
     if not isinstance(programme, Displace | Lateral) or programme.start != RELEASED:
-        return
-    width = case.pile.width
+        return []
+    curve, marks = result.curve, []
     found = characteristics(curve, width)
-    direction = np.sign(curve.displacement[-1])
     if found.capacity is not None:
-        place = 1e3 * direction * CAPACITY_DISPLACEMENT * width
-        axes.plot(place, found.capacity / 1e3, "o", color=colour, markersize=7.0, clip_on=False)
+        place = np.sign(curve.displacement[-1]) * CAPACITY_DISPLACEMENT * width
+        marks.append(CapacityMark(place, found.capacity, "o"))
     if found.tangent_capacity is not None:
-        place = 1e3 * (found.tangent_capacity - curve.head_load[0]) / found.initial_stiffness
-        axes.plot(place, found.tangent_capacity / 1e3, "x", color=colour, markersize=7.0)
+        place = (found.tangent_capacity - curve.head_load[0]) / found.initial_stiffness
+        marks.append(CapacityMark(place, found.tangent_capacity, "x"))
+    return marks
 
 
 def continuity(case: Case, installed: InstalledState, service: ServiceResult) -> Figure | None:

@@ -13,6 +13,8 @@ from install_mpm.conventions import Kinematics
 from install_mpm.state_file import InstalledState
 from service_fe.results import ServiceResult
 from workflows import directory as names
+from workflows.interactive import interactive
+from workflows.interactive_curves import service_curves
 from workflows.report_data import read_json
 from workflows.report_fields import colour_bar, symmetric_norm
 from workflows.report_html import Cell, details, figure, number, table
@@ -111,9 +113,14 @@ def _scaled(value: float | None, unit: str) -> str:
     return "–" if value is None else significant(SCALES[unit] * value, 4)
 
 
+def caption(name: str) -> str:
+    """Return the caption of a figure as one line of text."""
+    return " ".join(SERVICE_CAPTIONS[name].split())
+
+
 def captioned(name: str, picture: Figure) -> str:
     """Return a picture with the caption of its name."""
-    return figure(name, picture, " ".join(SERVICE_CAPTIONS[name].split()))
+    return figure(name, picture, caption(name))
 
 
 def handoff_html(case: ScrewCase, installed: InstalledState, files: ServiceFiles) -> str:
@@ -170,7 +177,12 @@ def service_html(case: ScrewCase, files: ServiceFiles) -> str:
     """Return curves, figures, convergence and what limits them."""
     return "\n".join(
         [
-            captioned("curves", curves(case, files.service, files.wished)),
+            interactive(
+                "curves",
+                curves(case, files.service, files.wished),
+                service_curves(case, files.service, files.wished),
+                caption("curves"),
+            ),
             comparison_table(files),
             "<h3>Convergence</h3>",
             convergence_table(files.summary["convergence"]),
