@@ -66,8 +66,8 @@ def _hover(shown: Shown) -> str:
 def _curve(result: ProgrammeResult, model: str, shown: Shown) -> go.Scatter:
     curve, hover = result.curve, _hover(shown)
     return line(
-        shown.displacement * curve.displacement, curve.head_load / 1e3, MODEL_NAMES[model], MODEL_COLOURS[model],
-        hover, mode="lines+markers", legendgroup=model,
+        shown.displacement * curve.displacement, curve.head_load / 1e3,
+        MODEL_NAMES[model], MODEL_COLOURS[model], hover, mode="lines+markers", legendgroup=model,
     )  # fmt: skip
 
 
