@@ -146,7 +146,7 @@ def test_another_soil_is_chosen_by_its_tag():
         ("interface.tensile_strength=0 kPa", "interface.tensile_strength", "set it, e.g."),
         ("service.programmes=[]", "service.programmes", "add at least one"),
         ("service.programmes.uplift.name=push_on", "service.programmes", "are named 'push_on'"),
-        ("service.programmes.uplift.start=later", "start", 'one of "released", "equilibrated"'),
+        ("service.programmes.uplift.start=later", "start", "which is not before it; use one of"),
         ("service.programmes.nobody.start=later", "--set", "use one of release, compression"),
         ("service.programmes=3", "service.programmes", "a list is needed"),
         ("titel=x", "titel", 'did you mean "title"?'),
