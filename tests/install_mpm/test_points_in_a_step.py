@@ -8,14 +8,20 @@ import pytest
 from install_mpm.carriers import take_state
 from install_mpm.cell_fill import cell_geometry, fill_cells
 from install_mpm.cells import CellType, reference_cell
-from install_mpm.constitutive.parameters import CoulombInterface
+from install_mpm.constitutive.parameters import CoulombInterface, MohrCoulomb
 from install_mpm.conventions import Kinematics
+from install_mpm.ground import Ground
 from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
 from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.pile_surface import initial_interface, pile_elements
 from install_mpm.seeding import seed_points
 from install_mpm.step import LEVEL_FILL, switch_on
+
+DENSE_SAND = MohrCoulomb(
+    youngs_modulus=30e6, poissons_ratio=0.25, cohesion=1e3, friction_angle=0.6,
+    dilation_angle=0.2, initial_void_ratio=0.55, critical_void_ratio=0.75,
+)  # fmt: skip
 
 
 def with_log_of(tensor):
@@ -92,6 +98,32 @@ def test_points_take_the_displacement_of_their_cell(make_column, elastic_ground,
     pressure = bulk * np.trace(strain, axis1=1, axis2=2)
     mean_stress = np.trace(updated.kirchhoff_stress, axis1=1, axis2=2) / 3.0
     np.testing.assert_allclose(mean_stress, pressure, atol=1e-7)
+
+
+def test_void_ratio_follows_the_volume_of_the_point(make_column, rng):
+    """Dilatant sand whose points yield by different amounts and share one pressure in a cell."""
+    column = make_column(Ground(unit_weight=18e3, k0=0.5, soil=DENSE_SAND))
+    mesh, points = column.mesh, column.scattered_points(rng)
+    geometry = cell_geometry(mesh, column.cell, Kinematics.PLANE_STRAIN)
+    start = specific_volume(points)
+    for _ in range(3):
+        equilibrium = SimpleNamespace(
+            displacement=0.01 * rng.normal(size=mesh.nodes.shape),
+            trial=SimpleNamespace(cell_volume_ratio=rng.uniform(0.99, 1.01, len(mesh.cell_nodes))),
+        )
+        fill = fill_cells(points, mesh, column.cell, geometry, 0.3)
+        points, is_sound = take_state(
+            points, mesh, fill, equilibrium, column.model, column.gradient
+        )
+        assert is_sound
+    assert points.state_variables[:, 2].max() > 0.01  # plastic shear strain
+    expected = start + np.log(points.volume_ratio)
+    np.testing.assert_allclose(specific_volume(points), expected, atol=1e-13)
+
+
+def specific_volume(points):
+    """Its logarithm, elastic and plastic part."""
+    return points.state_variables[:, 0] + np.trace(points.elastic_log_strain, axis1=1, axis2=2)
 
 
 def test_collapsed_points_are_not_sound(make_column, elastic_ground, rng):
