@@ -120,11 +120,12 @@ def moving_mesh(
     soil, stress = HenckyElastic(E, nu), _stress(sigma_v, sigma_h, tau)
     body = with_stress(_cylinder(R, soil), soil, stress)
     body = body._replace(points=body.points._replace(mass=DENSITY * body.points.volume))
-    start, worst = body.points, _Change()
+    start, worst, residuals = body.points, _Change(), []
     for number in range(1, steps + 1):
         body, result = _move_mesh(body, R, number / steps * advance_ratio * R, 2.0 * number * STEP)
         worst = worst.and_of(body, result, start, stress)
-    return Outcome(worst.checks(R))
+        residuals.append(tuple(result.equilibrium.newton.residuals))
+    return Outcome(worst.checks(R), residual_histories=tuple(residuals))
 
 
 class _Change(NamedTuple):
