@@ -67,10 +67,9 @@ def admissible_state(
 def _with_openings_closed(ground: GroundProfile, state: FEState) -> FEState:
     """Return the state without openings, but where the soil carries nothing in any case."""
     opening = np.zeros_like(state.state_variables, dtype=bool)
-    for row, soil in enumerate(soils_of(ground)):
-        names = dispatch.state_variable_names(soil)
-        if "opening" in names:
-            opening[state.material == row, names.index("opening")] = True
+    columns = dispatch.state_columns(dispatch.pack(soils_of(ground)), "opening")[state.material]
+    has_one = np.flatnonzero(columns >= 0)
+    opening[has_one, columns[has_one]] = True
     opening &= state.state_variables > 0.0
     places = np.flatnonzero(opening.any(axis=1))
     closed = state._replace(state_variables=np.where(opening, 0.0, state.state_variables))
