@@ -226,6 +226,10 @@ def verify(
     json_file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Write all numbers (JSON).")
     ] = None,
+    kept: Annotated[
+        Path | None,
+        typer.Option("--keep", metavar="DIR", help="Keep results in DIR; reuse those there."),
+    ] = None,
     is_listed: Annotated[
         bool, typer.Option("--list", help="Print the problems and their parameters.")
     ] = False,
@@ -236,7 +240,8 @@ def verify(
     if is_listed:
         print_list()
         return
-    results = verify_problems(problems or (), overrides or (), quick, (report_file, json_file))
+    files = (report_file, json_file)
+    results = verify_problems(problems or (), overrides or (), quick, files, kept)
     if json_file is not None:
         from workflows.verification_json import write_json
 

@@ -16,8 +16,9 @@ from workflows.progress import Reporter
 from workflows.verification import registry
 from workflows.verification.parameters import parameters_of, read_assignments
 from workflows.verification.problem import Problem
-from workflows.verification.runner import Run, Verified, run_problems
+from workflows.verification.runner import Run, Verified, run_problem, run_problems
 from workflows.verification_case import SUFFIX, read_problem_case
+from workflows.verification_kept import KeptResults
 from workflows.verification_numbers import HEADINGS, cells, count_text, inputs_text
 
 WIDTH = 110
@@ -65,17 +66,23 @@ def runs_of(arguments: Sequence[str], is_quick: bool) -> list[Run]:
 
 
 def verify_problems(
-    arguments: Iterable[str], overrides: Iterable[str], is_quick: bool, files: Iterable[Path | None]
+    arguments: Iterable[str],
+    overrides: Iterable[str],
+    is_quick: bool,
+    files: Iterable[Path | None],
+    kept: Path | None = None,
 ) -> list[Verified]:
     """Run the problems that the command line names and return their results.
 
     ``arguments`` are identifiers or case files, and assignments that follow the first one of
-    ``--set``; ``files`` are to be written later.
+    ``--set``; ``files`` are to be written later.  Results are kept in the folder ``kept`` and taken
+    from it.
 
     Raises
     ------
     CaseError
-        If a problem or a parameter is unknown, a value does not suit, or a file cannot be written.
+        If a problem or a parameter is unknown, a value does not suit, or a file cannot be written
+        or read.
     """
     arguments, assignments = list(arguments), list(overrides)
     assignments += [text for text in arguments if "=" in text]
@@ -88,11 +95,12 @@ def verify_problems(
     for file in files:
         if file is not None:
             _make_folder(file)
+    solve = run_problem if kept is None else _kept_results(kept).solve
     reporter = Reporter(console())
     doing = f"{len(chosen)} reference problem{'s' if len(chosen) > 1 else ''}"
     with reporter.stage("verify", doing) as advance:
         results = run_problems(
-            chosen, advance, lambda result: print_result(result, reporter.console)
+            chosen, advance, lambda result: print_result(result, reporter.console), solve
         )
     reporter.say(count_text(results))
     return results
@@ -107,6 +115,14 @@ def _make_folder(file: Path) -> None:
         raise CaseError(f"{file} is a folder; name a file")
 
 
+def _kept_results(folder: Path) -> KeptResults:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CaseError(f"{folder} cannot be made a folder: {error.strerror}") from error
+    return KeptResults(folder)
+
+
 def print_result(result: Verified, console: Console) -> None:
     """Print inputs, checks and convergence of one problem."""
     verdict = "met" if result.is_met else "FAILED"
@@ -114,7 +130,7 @@ def print_result(result: Verified, console: Console) -> None:
         Text.assemble(
             (f"{result.name}  {result.title}: ", "bold"),
             (verdict, STYLES[result.is_met]),
-            f"  ({result.seconds:.1f} s)",
+            f"  ({result.seconds:.1f} s{', kept' if result.is_kept else ''})",
         )
     )
     console.print(Text(f"with {inputs_text(result)}"), soft_wrap=True)

@@ -19,6 +19,7 @@ from workflows.directory import write_text
 from workflows.report_style import INSTALLED, WISHED, grid, panels, png_of, styled
 from workflows.verification.problem import Check, Series
 from workflows.verification.runner import Verified
+from workflows.verification_kept import source_module
 from workflows.verification_numbers import HEADINGS, cells, count_text, inputs_text
 
 TEMPLATE = Path(__file__).parent / "templates" / "verification.md"
@@ -64,8 +65,7 @@ def _pictures(result: Verified, folder: Path, page_folder: Path) -> str:
     lines = ""
     for picture in result.outcome.pictures if result.outcome else ():
         file = folder / f"{anchor(result)}-{picture.name}.png"
-        with styled():
-            file.write_bytes(png_of(picture.draw()))
+        file.write_bytes(picture.png())
         lines += f"\n![{picture.caption}]({file.relative_to(page_folder).as_posix()})\n"
     return lines
 
@@ -129,7 +129,7 @@ def _statement(result: Verified) -> str:
 
 
 def _source(result: Verified) -> str:
-    return inspect.unwrap(result.problem.run).__module__.replace(".", "/") + ".py"
+    return source_module(result.problem).replace(".", "/") + ".py"
 
 
 def _row(texts: tuple[str, ...]) -> str:

@@ -108,10 +108,11 @@ def moving_mesh(
     soil, stress = HenckyElastic(E, nu), _stress(sigma_v, sigma_h, tau)
     body = with_stress(_cylinder(R, soil), soil, stress)
     body = body._replace(points=body.points._replace(mass=DENSITY * body.points.volume))
-    start, worst = body.points, _Change()
+    start, worst, residuals = body.points, _Change(), []
     for number in range(1, steps + 1):
         body, result = _move_mesh(body, R, number / steps * advance_ratio * R, 2.0 * number * STEP)
         worst = worst.and_of(body, result, start, stress)
+        residuals.append(tuple(result.equilibrium.newton.residuals))
     return Outcome(
         (
             at_most("points outside the mesh", worst.outside, 0.0),
@@ -120,7 +121,8 @@ def moving_mesh(
             at_most("out-of-balance force over support forces", worst.force, UNCHANGED),
             at_most("relative change of mass", worst.mass, UNCHANGED),
             at_most("relative change of volume", worst.volume, UNCHANGED),
-        )
+        ),
+        residual_histories=tuple(residuals),
     )
 
 

@@ -50,7 +50,15 @@ class Picture:
     """Of its file, after the name of the problem or case."""
     caption: str
     draw: Callable[[], Any]
-    """Return the figure (matplotlib)."""
+    """Return the figure (matplotlib), or the bytes of a PNG that was drawn before."""
+
+    def png(self) -> bytes:
+        """Return the picture as PNG."""
+        from workflows.report_style import png_of, styled
+
+        with styled():
+            drawn = self.draw()
+        return drawn if isinstance(drawn, bytes) else png_of(drawn)
 
 
 @dataclass(frozen=True)

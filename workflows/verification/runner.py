@@ -81,10 +81,13 @@ class Verified:
     values: Mapping[str, Any]
     """Value of every parameter."""
     seconds: float
+    """Of processor time, which other work on the machine does not change."""
     outcome: Outcome | None
     """None if the problem could not be solved."""
     failure: str = ""
     """Why it could not, in a sentence."""
+    is_kept: bool = False
+    """Whether it was computed by an earlier run."""
     case_name: str = ""
     """Of the case file without its ending; empty without a case."""
     case_title: str = ""
@@ -153,15 +156,18 @@ def run_problem(problem: Problem, values: Mapping[str, Any] | None = None) -> Ve
 
     A problem that raises an error is a failed one; nothing is raised.
     """
-    inputs = {name: one.default for name, one in parameters_of(problem).items()} | dict(
-        values or {}
-    )
-    start = time.perf_counter()
+    inputs = inputs_of(problem, values or {})
+    start = time.process_time()
     try:
         outcome, failure = problem.run(**inputs), ""
     except Exception as error:  # whatever it is, the other problems go on
         outcome, failure = None, _sentence(error)
-    return Verified(problem, inputs, time.perf_counter() - start, outcome, failure)
+    return Verified(problem, inputs, time.process_time() - start, outcome, failure)
+
+
+def inputs_of(problem: Problem, values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the value of every parameter, with ``values`` in place of defaults."""
+    return {name: one.default for name, one in parameters_of(problem).items()} | dict(values)
 
 
 def _sentence(error: Exception) -> str:
@@ -174,17 +180,19 @@ def run_problems(
     runs: Sequence[Run],
     advance: Callable[[int, int, str], None],
     observe: Callable[[Verified], None],
+    solve: Callable[[Problem, Mapping[str, Any]], Verified] = run_problem,
 ) -> list[Verified]:
     """Return the results of all ``runs``.
 
     ``advance`` is told of expected seconds before each problem, ``observe`` gets each result.
+    ``solve`` returns the result of a problem with values in place of its defaults.
     """
     expected = [QUICK_SECONDS if run.problem.is_quick else OTHER_SECONDS for run in runs]
     results: list[Verified] = []
     for number, run in enumerate(runs):
         note = f"{run.name} {run.title}"
         advance(round(sum(expected[:number])), round(sum(expected)), note)
-        result = run_problem(run.problem, run.values)
+        result = solve(run.problem, run.values)
         if run.name != run.problem.identifier:
             result = replace(result, case_name=run.name, case_title=run.title)
         results.append(result)

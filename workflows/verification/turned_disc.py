@@ -137,10 +137,12 @@ def turn_once(
     step: float,
     *,
     motion: PileMotion | None = None,
+    taken_along: float | None = None,
 ) -> tuple[Body, StepResult]:
     """Return the body after a step that takes the nodes ``driven`` to ``angle``, and the step.
 
-    Without driven nodes an interface carries the ``motion`` of the rigid body to the soil.
+    Without driven nodes an interface carries the ``motion`` of the rigid body to the soil, which
+    may stay behind: in the first trial it turns by ``taken_along`` in rad, by default all the way.
     """
     nodes = body.mesh.nodes
     is_prescribed = np.zeros(nodes.shape, dtype=bool)
@@ -148,7 +150,8 @@ def turn_once(
     is_prescribed[driven] = True
     displacement = np.zeros_like(nodes)
     displacement[driven] = rotate_clockwise(nodes[driven], -step) - nodes[driven]
-    body = body._replace(start=_first_trial(body, disc, step))
+    along = step if taken_along is None else taken_along
+    body = body._replace(start=_first_trial(body, disc, along))
     return advance(
         body,
         Prescribed(is_prescribed, displacement),

@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
-from workflows.verification.references.annulus_interface import annulus_interface
+from workflows.verification.references.annulus_energy import hencky, neo_hookean
+from workflows.verification.references.annulus_interface import (
+    annulus_interface,
+    slipping_annulus,
+)
+from workflows.verification.references.annulus_torsion import annulus_torsion
 from workflows.verification.references.cyclic_interface import dissipation_per_cycle, loop_corners
 from workflows.verification.references.shaft import shaft_load
 
@@ -16,6 +21,7 @@ ANNULUS = {
     "cohesion": 0.5,
     "friction_angle": np.deg2rad(24.0),
 }
+FINITE = {"inner_radius": 1.0, "outer_radius": 4.0}
 SHAFT = {
     "radius": 0.5,
     "length": 10.0,
@@ -38,6 +44,35 @@ def test_annulus_with_interface():
     np.testing.assert_allclose(result.torque, expected, rtol=1e-6)
     pressed = annulus_interface(1.0, **ANNULUS, radial_pressure=2.0)
     assert pressed.torque == pytest.approx(2.0 * np.pi * (0.5 + 2.0 * np.tan(np.deg2rad(24.0))))
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+def test_slipping_annulus_carries_its_strength(friction):
+    soil = FINITE | {"youngs_modulus": 10e3, "poissons_ratio": 0.3, "energy": hencky}
+    result = slipping_annulus(**soil, cohesion=500.0, friction_angle=friction)
+    strength = 500.0 + result.pressure * np.tan(friction)
+    assert result.torque == pytest.approx(2.0 * np.pi * strength, rel=1e-9)
+    assert result.pressure > 0.0
+    stiff = slipping_annulus(
+        **soil | {"youngs_modulus": 1e6}, cohesion=500.0, friction_angle=friction
+    )
+    assert stiff.pressure == pytest.approx(0.01 * result.pressure, rel=0.05)  # Poynting: strain^2
+
+
+def test_pressure_of_the_nearly_incompressible_annulus():
+    # neo-Hookean, incompressible: d sigma_rr / dr = G g^2 / r with the shear g = T / (2 pi G r^2)
+    soil = FINITE | {"youngs_modulus": 30.0, "poissons_ratio": 0.4999}
+    state = annulus_torsion(0.5, energy=neo_hookean, **soil)
+    shear_modulus = 30.0 / 2.9998
+    shear = state.torque / (2.0 * np.pi * shear_modulus)
+    difference = 0.25 * shear_modulus * shear**2 * (1.0 - 4.0**-4)
+    assert state.radial_stress[-1] - state.radial_stress[0] == pytest.approx(difference, rel=1e-4)
+
+
+def test_soil_that_is_lost_before_it_slips():
+    soil = FINITE | {"youngs_modulus": 10e3, "poissons_ratio": 0.3, "energy": hencky}
+    with pytest.raises(ArithmeticError, match="no stable solution"):
+        slipping_annulus(**soil, cohesion=5e4, friction_angle=0.4)
 
 
 def test_shaft():

@@ -2,6 +2,9 @@
 
 The interface and the annulus are springs in series, 1 / k = 1 / k_annulus + 1 / (2 pi a^3 k_s).
 The interface carries at most c + p tan(phi), so T = min(k theta, 2 pi a^2 (c + p tan(phi))).
+
+At finite strain shearing presses the soil against the pile (Poynting's effect): the pressure while
+it slips is that of the annulus whose rim carries c + p tan(phi) (``annulus_torsion``).
 """
 
 from __future__ import annotations
@@ -10,8 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import brentq
 
-from workflows.verification.references.annulus_torsion import small_strain_torque
+from workflows.verification.references.annulus_energy import EnergyLaw
+from workflows.verification.references.annulus_torsion import (
+    AnnulusTorsion,
+    annulus_torsion,
+    small_strain_torque,
+)
 
 
 @dataclass(frozen=True)
@@ -68,3 +77,65 @@ def annulus_interface(
     strength = 2.0 * np.pi * inner_radius**2 * shear_strength
     torque = np.clip(stiffness * np.asarray(rotation, dtype=float), -strength, strength)
     return AnnulusInterface(torque, stiffness, strength, strength / stiffness)
+
+
+@dataclass(frozen=True)
+class SlippingAnnulus:
+    """Annulus of finite strain whose inner rim slips."""
+
+    torque: float
+    """On the inner rim, in N m per metre."""
+    pressure: float
+    """On the inner rim in Pa, compression positive."""
+    rotation: float
+    """Of the soil at the inner rim, in rad."""
+
+
+def slipping_annulus(
+    *,
+    energy: EnergyLaw,
+    inner_radius: float,
+    outer_radius: float,
+    youngs_modulus: float,
+    poissons_ratio: float,
+    cohesion: float,
+    friction_angle: float,
+) -> SlippingAnnulus:
+    """Return the annulus whose inner rim, rigid across, carries 2 pi a^2 (c + p tan(phi)).
+
+    Parameters as in ``annulus_interface``; ``energy`` as in ``annulus_torsion``.
+
+    Raises
+    ------
+    ArithmeticError
+        If the soil is lost before it slips.
+    """
+    area = 2.0 * np.pi * inner_radius**2
+
+    def turned(rotation: float) -> AnnulusTorsion:
+        return annulus_torsion(
+            rotation,
+            energy=energy,
+            inner_radius=inner_radius,
+            outer_radius=outer_radius,
+            youngs_modulus=youngs_modulus,
+            poissons_ratio=poissons_ratio,
+        )
+
+    def beyond(rotation: float) -> float:
+        state = turned(rotation)
+        strength = cohesion - state.radial_stress[0] * np.tan(friction_angle)
+        return float(state.torque - area * strength)
+
+    high = area * cohesion / small_strain_torque(
+        1.0,
+        inner_radius=inner_radius,
+        outer_radius=outer_radius,
+        youngs_modulus=youngs_modulus,
+        poissons_ratio=poissons_ratio,
+    )  # fmt: skip
+    while beyond(high) < 0.0:
+        high *= 1.1
+    rotation = brentq(beyond, 0.0, high, xtol=1e-12 * high)
+    state = turned(rotation)
+    return SlippingAnnulus(state.torque, -float(state.radial_stress[0]), rotation)

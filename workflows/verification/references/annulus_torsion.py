@@ -31,6 +31,8 @@ class AnnulusTorsion:
     """r - R in m; negative is inflow."""
     twist: np.ndarray
     """Rotation phi about the centre in rad."""
+    radial_stress: np.ndarray
+    """True radial stress in Pa, tension positive."""
 
 
 def small_strain_torque(
@@ -90,7 +92,13 @@ def annulus_torsion(
     gradient, _ = energy_derivatives(q, basis.radius, energy, moduli)
     torque = np.sum(basis.weight * gradient[2] * basis.lift_slope)
     sense = np.sign(rotation)
-    return AnnulusTorsion(sense * torque, basis.radius, q[1] - basis.radius, sense * phi)
+    return AnnulusTorsion(
+        sense * torque,
+        basis.radius,
+        q[1] - basis.radius,
+        sense * phi,
+        gradient[0] * basis.radius / q[1],
+    )
 
 
 def largest_rotation(
