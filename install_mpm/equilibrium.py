@@ -243,8 +243,9 @@ class StepSystem:
         )  # fmt: skip
         self.soil_displacement = soil_displacement(self.model.elements, nodal)
         self.axes = step_axes(
-            self.interface, self.model.elements.is_swept, self.rotation, self.soil_displacement
-        )
+            self.interface, self.model.elements.is_swept, self.rotation,
+            self.pile_displacement, self.soil_displacement,
+        )  # fmt: skip
         evaluate_interface(
             self.model.elements.nodes, self.model.elements.shape_values,
             self.interface.area * self.interface.covered, self.interface.parameters,

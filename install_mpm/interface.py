@@ -169,19 +169,24 @@ class StepAxes(NamedTuple):
     along any other.
     """
     slip_change: np.ndarray
-    """By which the slip changes with the displacement of the soil."""
+    """By which the slip changes with the motion of the pile less that of the soil: on a surface
+    that is swept the axes turn with the soil as well."""
     traction: np.ndarray
     """In which the traction acts on the soil at the end of the step."""
 
 
 def step_axes(
-    points: InterfacePoints, is_swept: np.ndarray | None, rotation: float, soil: np.ndarray
+    points: InterfacePoints,
+    is_swept: np.ndarray | None,
+    rotation: float,
+    pile: np.ndarray,
+    soil: np.ndarray,
 ) -> StepAxes:
     """Return the local axes in a step in which the pile turns by ``rotation`` (rad).
 
-    ``soil`` (n, dim) is the displacement in m of the soil at the points.  On a surface that is
-    swept onto itself the soil meets the normal of the place where it is, so that pressure on a
-    cylinder has no torque however far the soil stays behind.
+    ``pile`` and ``soil`` (n, dim) are the displacements in m of both sides at the points.  On a
+    surface that is swept onto itself the soil meets the normal of the place where it is, so that
+    pressure on a cylinder has no torque however far the soil stays behind.
     """
     start = local_axes(points)
     if is_swept is None or not rotation:
@@ -189,12 +194,14 @@ def step_axes(
         return StepAxes(slip, slip, _turned(start, np.full(len(start), rotation)))
     of_soil = np.where(is_swept, _polar_change(points.position, soil), 0.0)
     slip = _turned(start, (rotation + of_soil) / 2.0)
-    traction = _turned(start, np.where(is_swept, of_soil, rotation))
-    change = slip.copy()
-    change[is_swept, -1] = traction[is_swept, -1]
     behind = np.where(is_swept, (rotation - of_soil) / 2.0, 0.0)
     slip[:, -1] /= np.cos(behind)[:, None]  # so that motion along the radius counts in full
-    return StepAxes(slip, change, traction)
+    by_angle = 0.5 * _quarter_turned(slip)
+    by_angle[:, -1] -= 0.5 * np.tan(behind)[:, None] * slip[:, -1]
+    by_angle = np.einsum("pij,pj->pi", by_angle, pile - soil)
+    turn = np.where(is_swept[:, None], _angle_gradient(points.position + soil), 0.0)
+    change = slip - by_angle[:, :, None] * turn[:, None, :]
+    return StepAxes(slip, change, _turned(start, np.where(is_swept, of_soil, rotation)))
 
 
 def _polar_change(position: np.ndarray, displacement: np.ndarray) -> np.ndarray:
@@ -203,6 +210,24 @@ def _polar_change(position: np.ndarray, displacement: np.ndarray) -> np.ndarray:
     cross = position[:, 0] * moved[:, 1] - position[:, 1] * moved[:, 0]
     change: np.ndarray = np.arctan2(cross, (position[:, :2] * moved[:, :2]).sum(axis=1))
     return change
+
+
+def _angle_gradient(position: np.ndarray) -> np.ndarray:
+    """Return the derivative (n, dim) in rad/m of the polar angle by the ``position`` (n, dim)."""
+    gradient = np.zeros_like(position)
+    squared = np.maximum((position[:, :2] ** 2).sum(axis=1), 1e-300)
+    gradient[:, 0], gradient[:, 1] = -position[:, 1] / squared, position[:, 0] / squared
+    return gradient
+
+
+def _quarter_turned(vectors: np.ndarray) -> np.ndarray:
+    """Return ``vectors`` (..., dim) turned by 90 degrees about the z axis, without their z part.
+
+    It is their derivative by an angle of rotation.
+    """
+    turned = np.zeros_like(vectors)
+    turned[..., 0], turned[..., 1] = -vectors[..., 1], vectors[..., 0]
+    return turned
 
 
 def _turned(axes: np.ndarray, angle: np.ndarray) -> np.ndarray:
@@ -228,11 +253,8 @@ def add_turning_of_traction(
         return
     shape = elements.shape_values
     n_points, n_facet_nodes = shape.shape
-    x, y = position[:, 0], position[:, 1]
-    swept = elements.is_swept / np.maximum(x**2 + y**2, 1e-300)
-    change, turned = np.zeros_like(position), np.zeros_like(forces)
-    change[:, 0], change[:, 1] = -swept * y, swept * x  # of the polar angle
-    turned[:, 0], turned[:, 1] = -forces[:, 1], forces[:, 0]
+    change = _angle_gradient(position) * elements.is_swept[:, None]
+    turned = _quarter_turned(forces)
     dim = position.shape[1]
     stiffness[:, :n_facet_nodes, :, :n_facet_nodes, :] += np.einsum(
         "qa,eqi,qb,eqj->eaibj", shape, turned.reshape(-1, n_points, dim), shape,

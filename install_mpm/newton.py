@@ -26,6 +26,9 @@ GROWTH_ALLOWED = 1.0
 ROUND_OFF = 2e-12
 """Relative residuals below this are round-off and say nothing about the order of convergence."""
 
+EXACT = float(np.finfo(float).eps)
+"""What a residual of zero counts as where logarithms are taken."""
+
 
 class Evaluation(NamedTuple):
     """Residual, tangent and the force they are measured against, for one trial."""
@@ -131,5 +134,5 @@ def convergence_order(residuals: np.ndarray, round_off: float = ROUND_OFF) -> fl
 
 def _order_of_three(residuals: np.ndarray) -> float:
     """Return the order of three successive residuals, 0 if they do not fall."""
-    first, second, third = np.log(residuals)
+    first, second, third = np.log(np.maximum(residuals, EXACT))
     return float((third - second) / (second - first)) if third < second < first else 0.0

@@ -1,4 +1,4 @@
-"""What a run shows: a progress bar with time left on a terminal, else one line per stage."""
+"""What a run shows: a bar with the time left on a terminal; in a log, lines that say the same."""
 
 from __future__ import annotations
 
@@ -21,6 +21,9 @@ from workflows.report_units import FORCE_UNIT
 
 if TYPE_CHECKING:
     from workflows.case import Case
+
+LINE_INTERVAL = 60.0
+"""Seconds between the lines of a stage in a log."""
 
 Advance = Callable[[int, int, str], None]
 """Show that ``done`` of ``total`` steps are complete, with a short note."""
@@ -67,8 +70,28 @@ class Reporter:
 
                 yield advance
         else:
-            yield no_progress
+            yield self._lines(name)
         self.say(f"{name:<9} {doing}: {time.perf_counter() - start:.1f} s")
+
+    def _lines(self, name: str) -> Advance:
+        """Return what prints how far a stage is, once in ``LINE_INTERVAL``.
+
+        A resumed stage begins at the step that it was resumed from.
+        """
+        first: tuple[int, float] | None = None
+        last = time.perf_counter()
+
+        def advance(done: int, total: int, note: str) -> None:
+            nonlocal first, last
+            now = time.perf_counter()
+            first = first or (done, now)
+            if now - last < LINE_INTERVAL or not first[0] < done < total:
+                return
+            last = now
+            left = (now - first[1]) * (total - done) / (done - first[0])
+            self.say(f"{name:<9} {done} of {total}, about {left / 60.0:.0f} min left; {note}")
+
+        return advance
 
     def say(self, text: str) -> None:
         """Print one line."""

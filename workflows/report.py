@@ -8,19 +8,18 @@ from string import Template
 
 from install_mpm.conventions import Kinematics
 from workflows.directory import REPORT, write_text
+from workflows.interactive import TEMPLATES, scripts
 from workflows.manifest import created_by
 from workflows.report_data import Results, read_results
 from workflows.report_sections import Section, sections
 from workflows.report_style import styled
 from workflows.report_units import PER_LENGTH, shown
 
-TEMPLATES = Path(__file__).parent / "templates"
-
 
 def write_report(directory: Path) -> Path:
     """Write ``report.html`` into ``directory`` from the results in it; return its path.
 
-    The page opens without network: pictures, styles and text are all inside.
+    The page opens without network: pictures, styles, text and scripts are all inside.
 
     Raises
     ------
@@ -50,16 +49,18 @@ def page_html(results: Results, parts: list[Section]) -> str:
 def filled_page(title: str, heading: str, subtitle: str, parts: list[Section]) -> str:
     """Return a page with ``parts``; title, heading and subtitle are plain text."""
     template = Template((TEMPLATES / "report.html").read_text(encoding="utf-8"))
+    content = "\n".join(
+        f'<section id="{part.name}"><h2>{escape(part.title)}</h2>\n{part.html}\n</section>'
+        for part in parts
+    )
     return template.substitute(
         title=escape(title),
         heading=escape(heading),
         subtitle=escape(subtitle),
         css=(TEMPLATES / "report.css").read_text(encoding="utf-8"),
         contents=" ".join(f'<a href="#{part.name}">{escape(part.title)}</a>' for part in parts),
-        sections="\n".join(
-            f'<section id="{part.name}"><h2>{escape(part.title)}</h2>\n{part.html}\n</section>'
-            for part in parts
-        ),
+        sections=content,
+        scripts=scripts(content),
         created_by=escape(created_by()),
     )
 

@@ -52,14 +52,19 @@ def _row(cells: Iterable[str | Cell], tag: str) -> str:
     return f"<tr>{''.join(parts)}</tr>"
 
 
-def figure(name: str, picture: Figure, caption: str) -> str:
-    """Return a picture with its caption (plain text)."""
+def still(name: str, picture: Figure, caption: str) -> str:
+    """Return a picture as inline SVG, at most as wide as it was made; the caption is plain text."""
     width = picture.get_size_inches()[0]
     svg = svg_of(picture, name).replace(
         "<svg ", f'<svg role="img" aria-label="{escape(caption, quote=True)}" ', 1
     )
+    return f'<div style="max-width: {width:.1f}in">{svg}</div>'
+
+
+def figure(name: str, picture: Figure, caption: str) -> str:
+    """Return a picture with its caption (plain text)."""
     return (
-        f'<figure id="{name}"><div style="max-width: {width:.1f}in">{svg}</div>'
+        f'<figure id="{name}">{still(name, picture, caption)}'
         f"<figcaption>{escape(caption)}</figcaption></figure>"
     )
 

@@ -7,8 +7,15 @@ from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
-from workflows import report_handoff, report_installation, report_service, report_tables
+from workflows import (
+    interactive_curves,
+    report_handoff,
+    report_installation,
+    report_service,
+    report_tables,
+)
 from workflows.case import Case
+from workflows.interactive import interactive
 from workflows.report_data import Results
 from workflows.report_html import code, details, figure
 from workflows.report_text import CAPTIONS, LIMITS, METHOD, SHAPE_LIMITS
@@ -80,22 +87,27 @@ def case_html(results: Results) -> str:
     )
 
 
+def caption(name: str) -> str:
+    """Return the caption of a figure as one line of text."""
+    return " ".join(CAPTIONS[name].split())
+
+
 def captioned(name: str, picture: Figure) -> str:
     """Return a picture with the caption of its name."""
-    return figure(name, picture, " ".join(CAPTIONS[name].split()))
+    return figure(name, picture, caption(name))
 
 
 def installation_html(results: Results) -> str:
     """Return the pictures of the installation; a pile that was not moved has no force."""
     case, installed = results.case, results.installed
-    pictures = {}
+    parts = []
     if float(installed.pile.penetration) > 0.0:
-        pictures["force"] = report_installation.force_against_depth(case, installed.history)
-    pictures |= {
-        "points": report_installation.mesh_and_points(case, installed),
-        "stress": report_installation.stresses(case, installed),
-    }
-    return "\n".join(captioned(name, picture) for name, picture in pictures.items())
+        force = report_installation.force_against_depth(case, installed.history)
+        plot = interactive_curves.force_against_depth(case, installed.history)
+        parts.append(interactive("force", force, plot, caption("force")))
+    parts.append(captioned("points", report_installation.mesh_and_points(case, installed)))
+    parts.append(captioned("stress", report_installation.stresses(case, installed)))
+    return "\n".join(parts)
 
 
 def convergence_html(results: Results) -> str:
@@ -131,16 +143,17 @@ def handoff_html(results: Results) -> str:
 def service_html(results: Results) -> str:
     """Return curves, continuity and mechanisms."""
     case, service, wished = results.case, results.service, results.wished
-    parts = [captioned("curves", report_service.curves(case, service, wished))]
+    picture = report_service.curves(case, service, wished)
+    plot = interactive_curves.service_curves(case, service, wished)
+    parts = [interactive("curves", picture, plot, caption("curves"))]
     continuity = report_service.continuity(case, results.installed, service)
     if continuity is not None:
         parts.append(captioned("continuity", continuity))
-    caption = " ".join(CAPTIONS["mechanism"].split())
     for number, result in enumerate(service.programmes):
         name, start = result.programme.name, getattr(result.programme, "start", None)
         if start == "released":
             picture = report_service.mechanism(case, service, wished, name)
-            text = caption.format(report_tables.spaced(name))
+            text = caption("mechanism").format(report_tables.spaced(name))
             parts.append(figure(f"mechanism_{number}", picture, text))
     return "\n".join(parts)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.colors import Normalize
@@ -62,7 +62,7 @@ def curves(case: Case, service: ServiceResult, wished: ServiceResult) -> Figure:
         here.set(
             xlabel="displacement, downward (mm)",
             ylabel=f"head load ({FORCE_UNIT[case.kinematics]})",
-            title=_title(result),
+            title=title_of(result),
         )
         here.axhline(0.0, color=MUTED, linewidth=0.6)
         grid(here)
@@ -70,14 +70,15 @@ def curves(case: Case, service: ServiceResult, wished: ServiceResult) -> Figure:
     return figure
 
 
-def _title(result: ProgrammeResult) -> str:
+def title_of(result: ProgrammeResult) -> str:
+    """Return the name of a programme and the pile that it starts from."""
     start = getattr(result.programme, "start", None)
     name = result.programme.name.replace("_", " ")
     return name if start is None else f"{name}, from the {start} pile"
 
 
 def _draw_curve(axes: Any, model: str, result: ProgrammeResult, case: Case) -> None:
-    """Draw one curve with its capacities: dot at 0.1 widths, cross where the tangents meet."""
+    """Draw one curve with its capacities."""
     curve, colour = result.curve, MODEL_COLOURS[model]
     axes.plot(
         1e3 * curve.displacement,
@@ -87,17 +88,35 @@ def _draw_curve(axes: Any, model: str, result: ProgrammeResult, case: Case) -> N
         label=MODEL_NAMES[model],
         markersize=3.0,
     )
+    for mark in capacity_marks(result, case.pile.width):
+        size = {"markersize": 7.0, "clip_on": False}
+        axes.plot(1e3 * mark.displacement, mark.head_load / 1e3, mark.symbol, color=colour, **size)
+
+
+class CapacityMark(NamedTuple):
+    """Where a curve reaches a capacity."""
+
+    displacement: float
+    """In m."""
+    head_load: float
+    """In N."""
+    symbol: str
+    """Dot at 0.1 widths, cross where the tangents meet."""
+
+
+def capacity_marks(result: ProgrammeResult, width: float) -> list[CapacityMark]:
+    """Return the capacities of a programme that displaces the released pile of ``width`` in m."""
     if not isinstance(result.programme, Displace) or result.programme.start != "released":
-        return
-    width = case.pile.width
+        return []
+    curve, marks = result.curve, []
     found = characteristics(curve, width)
-    direction = np.sign(curve.displacement[-1])
     if found.capacity is not None:
-        place = 1e3 * direction * CAPACITY_DISPLACEMENT * width
-        axes.plot(place, found.capacity / 1e3, "o", color=colour, markersize=7.0, clip_on=False)
+        place = np.sign(curve.displacement[-1]) * CAPACITY_DISPLACEMENT * width
+        marks.append(CapacityMark(place, found.capacity, "o"))
     if found.tangent_capacity is not None:
-        place = 1e3 * (found.tangent_capacity - curve.head_load[0]) / found.initial_stiffness
-        axes.plot(place, found.tangent_capacity / 1e3, "x", color=colour, markersize=7.0)
+        place = (found.tangent_capacity - curve.head_load[0]) / found.initial_stiffness
+        marks.append(CapacityMark(place, found.tangent_capacity, "x"))
+    return marks
 
 
 def continuity(case: Case, installed: InstalledState, service: ServiceResult) -> Figure | None:

@@ -14,6 +14,9 @@ from install_mpm.state_file import InstalledState
 from workflows import screw_report_curves as curves
 from workflows import screw_report_ground as ground
 from workflows.directory import REPORT, TIMING, write_text
+from workflows.interactive import interactive
+from workflows.interactive_curves import torque_and_force
+from workflows.interactive_space import view
 from workflows.report import filled_page
 from workflows.report_html import code, details, figure
 from workflows.report_sections import Section
@@ -21,7 +24,7 @@ from workflows.report_style import styled
 from workflows.screw_animation import animation
 from workflows.screw_case import ScrewCase
 from workflows.screw_export import read_surface, stored_frames
-from workflows.screw_frames import PileSurface, pile_surface
+from workflows.screw_frames import PileSurface, pile_surface, points_near_pile
 from workflows.screw_report_tables import (
     balance_of,
     case_tables,
@@ -41,8 +44,8 @@ HEADING = "Screw pile installation · three dimensions · forces for the whole p
 def write_screw_report(directory: Path, case: ScrewCase, installed: InstalledState) -> Path:
     """Write ``report.html`` into ``directory`` and return its path.
 
-    The page opens without network: pictures, styles and text are all inside.  It has an animation
-    if frames of the installation are stored in ``directory``.
+    The page opens without network: pictures, styles, text and scripts are all inside.  It has an
+    animation if frames of the installation are stored in ``directory``.
     """
     with styled():
         parts = sections(directory, case, installed)
@@ -105,18 +108,25 @@ def case_html(case: ScrewCase, installed: InstalledState) -> str:
     )
 
 
+def caption(name: str) -> str:
+    """Return the caption of a figure as one line of text."""
+    return " ".join(CAPTIONS[name].split())
+
+
 def captioned(name: str, picture: Figure) -> str:
     """Return a picture with the caption of its name."""
-    return figure(name, picture, " ".join(CAPTIONS[name].split()))
+    return figure(name, picture, caption(name))
 
 
 def installation_html(directory: Path, case: ScrewCase, installed: InstalledState) -> str:
     """Return curves of torque, crowd force, their parts and side forces."""
     history, pile = driven(installed.history), case.pile
     parts = part_torques(pile, installed, driven_surface(directory, installed))
+    picture = curves.torque_and_force(case, installed.history)
+    plot = torque_and_force(case, installed.history)
     return "\n".join(
         [
-            captioned("torque", curves.torque_and_force(case, installed.history)),
+            interactive("torque", picture, plot, caption("torque")),
             captioned("parts", curves.torque_by_part(pile, history, parts)),
             part_table(parts, float(history.torque[-1])),
             forms_html(installed.interface),
@@ -141,10 +151,12 @@ def forms_html(interface: InterfacePoints) -> str:
 def ground_html(directory: Path, case: ScrewCase, installed: InstalledState) -> str:
     """Return the pictures of pile and ground, and the animation if frames are stored."""
     surface = pile_surface(installed.interface)
+    picture = tractions(case.pile, surface, ground.pose_of(installed))
+    plot = view(surface, points_near_pile(installed), case.ground)
     parts = [
         captioned("vertical", ground.vertical(case, installed)),
         captioned("horizontal", ground.horizontal(case, installed)),
-        captioned("tractions", tractions(case.pile, surface, ground.pose_of(installed))),
+        interactive("tractions", picture, plot, caption("tractions")),
     ]
     moving = animation(directory, case, installed.history)
     if moving is not None:
@@ -154,12 +166,12 @@ def ground_html(directory: Path, case: ScrewCase, installed: InstalledState) -> 
 
 def animation_html(gif: bytes) -> str:
     """Return an animation with its caption."""
-    caption = escape(" ".join(CAPTIONS["animation"].split()))
+    words = escape(caption("animation"))
     content = base64.b64encode(gif).decode("ascii")
     return (
         '<figure id="animation"><img style="width: 100%; border-radius: 8px" '
-        f'alt="{caption}" src="data:image/gif;base64,{content}">'
-        f"<figcaption>{caption}</figcaption></figure>"
+        f'alt="{words}" src="data:image/gif;base64,{content}">'
+        f"<figcaption>{words}</figcaption></figure>"
     )
 
 

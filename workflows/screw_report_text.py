@@ -25,7 +25,8 @@ CAPTIONS = {
     "tractions": """The pile at the end as the soil feels it, mean of each facet: contact pressure
         (compression positive) and shear traction on its surface, from above and from below. Dark
         lines are the edges of the parts. Pressures beyond the ends of the scale, at the edges of
-        the plates, have its last colours.""",
+        the plates, have its last colours. On a screen the pile can be turned; the dots are material
+        points behind the plane y = 0, coloured by the change of mean pressure.""",
     "animation": """The installation: displacement since the start and change of mean pressure in
         the vertical slice through the axis, and contact pressure on the pile.""",
     "newton": """Newton's method. Left: relative out-of-balance force of every step. Middle: order

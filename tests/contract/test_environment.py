@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -83,3 +84,14 @@ def test_environment_sets_what_is_not_set_and_keeps_what_is() -> None:
             check=True,
         )
         assert result.stdout.strip() == expected
+
+
+def test_every_package_is_installed() -> None:
+    listed = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    packages = set(listed["tool"]["setuptools"]["packages"])
+    found = {
+        init.parent.relative_to(ROOT).as_posix().replace("/", ".")
+        for top in ("install_mpm", "handoff", "service_fe", "workflows")
+        for init in (ROOT / top).rglob("__init__.py")
+    }
+    assert packages == found

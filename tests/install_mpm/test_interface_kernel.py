@@ -174,10 +174,10 @@ def test_soil_that_slides_on_a_circle_meets_no_gap_and_the_normal_where_it_is(sh
     swept = np.ones(20, dtype=bool)
 
     def gap(displacement):
-        axes = step_axes(points, swept, angle, displacement)
+        axes = step_axes(points, swept, angle, pile, displacement)
         return np.einsum("pj,pj->p", axes.slip[:, 1], pile - displacement)
 
-    axes = step_axes(points, swept, angle, soil)
+    axes = step_axes(points, swept, angle, pile, soil)
     np.testing.assert_allclose(gap(soil), 0.0, atol=1e-15)
     np.testing.assert_allclose(axes.traction[:, 1], -(points.position + soil) / radius)
     change = 1e-6 * rng.normal(size=soil.shape)

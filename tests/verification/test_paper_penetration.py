@@ -10,12 +10,9 @@ import pytest
 
 from install_mpm.discretisation import Scheme
 from install_mpm.newton import convergence_order
-from workflows.verification.paper_penetration import (
-    fig6,
-    fig6_default,
-    fig6_friction,
-    fig8,
-)
+from workflows.verification.paper_friction import fig6_friction, fig6_smoothing
+from workflows.verification.paper_hencky import fig6_hencky
+from workflows.verification.paper_penetration import fig6, fig6_default, fig8
 from workflows.verification.penetration import Penetration, penetrate, work_and_energy
 from workflows.verification.references import prototype
 
@@ -72,6 +69,16 @@ def test_first_steps_with_friction():
     assert all(check.is_met for check in checks.values())
 
 
+def test_smoothing_vanishes_in_the_first_steps():
+    assert_all_met(fig6_smoothing(penetration=0.2, h_coarse=1.0, h_fine=0.5))
+
+
+def test_first_steps_in_hencky_soil_are_elliptic():
+    outcome = fig6_hencky(penetration=0.2, h=1.0)
+    assert_all_met(outcome)
+    assert all("all soil is elliptic" in remark for remark in outcome.remarks)
+
+
 def test_the_two_discretisations_agree_while_cells_are_little_deformed():
     default = penetrate(Penetration(steps=3, scheme=Scheme.CARRIERS)).reaction
     paper = penetrate(Penetration(steps=3)).reaction
@@ -79,7 +86,9 @@ def test_the_two_discretisations_agree_while_cells_are_little_deformed():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("run", [fig6, fig6_default, fig8, fig6_friction])
+@pytest.mark.parametrize(
+    "run", [fig6, fig6_default, fig8, fig6_friction, fig6_smoothing, fig6_hencky]
+)
 def test_four_metres(run):
     assert_all_met(run())
 

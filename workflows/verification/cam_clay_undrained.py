@@ -45,6 +45,8 @@ class UndrainedTest:
     """Effective, p in Pa."""
     pore_pressure: np.ndarray
     """Excess pore pressure in Pa; zero without pore fluid."""
+    residuals: tuple[tuple[float, ...], ...]
+    """Of the Newton iterations of each step, over the pressure at the start."""
 
 
 def undrained_test(
@@ -61,24 +63,27 @@ def undrained_test(
     strain, tangent = np.empty((1, 6)), np.empty((1, 6, 6))
     dispatch.elastic_strain_from_stress_all(materials, material, stress, state, strain)
     is_wet = soil.pore_fluid_bulk_modulus > 0.0
-    status, records = np.zeros(1, dtype=np.int64), []
+    status, records, residuals = np.zeros(1, dtype=np.int64), [], []
     radial, axial = 0.5 * shortening / steps, shortening / steps
     for _ in range(steps):
         old_strain, old_state = strain.copy(), state.copy()
+        history: list[float] = []
         for _ in range(MOST_ITERATIONS):
             trial = old_strain + np.array([radial, -axial, radial, 0.0, 0.0, 0.0])
             dispatch.update_all(
                 materials, material, trial, old_state, stress, strain, state, tangent, status
             )
             excess = stress[0, 0] + mean_pressure
-            if not is_wet or abs(excess) < 1e-9 * mean_pressure:
+            history.append(float(abs(excess)) / mean_pressure if is_wet else 0.0)
+            if history[-1] < 1e-9:
                 break
             radial -= excess / (tangent[0, 0, 0] + tangent[0, 0, 2])
         pore = float(state[0, 0]) if is_wet else 0.0
+        residuals.append(tuple(history))
         records.append((stress[0, 0] - stress[0, 1], -stress[0, :3].mean() - pore, pore))
     deviator, pressure, pore_pressure = np.array(records).T
     path = shortening * np.arange(1, steps + 1) / steps
-    return UndrainedTest(path, deviator, pressure, pore_pressure)
+    return UndrainedTest(path, deviator, pressure, pore_pressure, tuple(residuals))
 
 
 Stress = Annotated[float, Unit("Pa")]
@@ -147,6 +152,7 @@ def pe4(
             ),
         ),
         remarks=(f"{steps} equal steps to an axial strain of {END:g}.",),
+        residual_histories=wet.residuals,
     )
 
 

@@ -56,10 +56,12 @@ def moving_mesh(
     components = sigma_xx, sigma_yy, tau_xy
     full = SOIL_SHARE * R - cell
     checks: list[Check] = []
-    remarks = []
+    remarks, residuals = [], []
     for name, move in moves.items():
         soil = HenckyElastic(E, nu)
-        checks += _unchanged(name, _soil(Scheme.CARRIERS, R, soil, components), move, full)
+        own, history = _unchanged(name, _soil(Scheme.CARRIERS, R, soil, components), move, full)
+        checks += own
+        residuals.append(history)
         quadrature, _ = _moved(_soil(Scheme.QUADRATURE, R, soil, components), move)
         _, result = _equilibrium(quadrature, full)
         remarks.append(
@@ -67,7 +69,7 @@ def moving_mesh(
             f" out-of-balance force is {100.0 * result.equilibrium.newton.residuals[0]:.2g} % of"
             " the support forces"
         )
-    return Outcome(tuple(checks), remarks=tuple(remarks))
+    return Outcome(tuple(checks), remarks=tuple(remarks), residual_histories=tuple(residuals))
 
 
 def _soil(
@@ -105,8 +107,10 @@ def _equilibrium(body: Body, full: float) -> tuple[Body, StepResult]:
     return advance(body, at_rest, name="soil at rest")
 
 
-def _unchanged(name: str, body: Body, move: MoveMesh, full: float) -> list[Check]:
-    """Return the checks of one motion."""
+def _unchanged(
+    name: str, body: Body, move: MoveMesh, full: float
+) -> tuple[list[Check], tuple[float, ...]]:
+    """Return the checks of one motion, and the residuals of the step at rest after it."""
     before = body.points
     moved, outside = _moved(body, move)
     drift = np.abs(moved.points.position - before.position).max()
@@ -126,10 +130,11 @@ def _unchanged(name: str, body: Body, move: MoveMesh, full: float) -> list[Check
         ("change of stress over its largest component", change, UNCHANGED),
         ("relative change of volume", abs(growth), UNCHANGED),
     )  # fmt: skip
-    return [
+    checks = [
         at_most(f"mesh moved by {name}: {text}", float(value), bound)
         for text, value, bound in quantities
     ]
+    return checks, tuple(result.equilibrium.newton.residuals)
 
 
 PROBLEM = Problem(

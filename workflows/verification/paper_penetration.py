@@ -1,7 +1,5 @@
 """FIG6, FIG8: the paper's pile penetrates elastic soil, without slip and with interfaces.
 
-FIG6-FRICTION adds the elasto-plastic interface, which the paper shows on two blocks only (Fig. 9).
-
 The paper gives pictures only.  Reactions are compared with those of a prototype (see
 ``references.prototype``).  The soil is elastic, so with any parameters the energy that it stores is
 at most the work of the pile; what is missing the scheme has lost.
@@ -23,7 +21,6 @@ from workflows.verification.paper_penetration_checks import (
     dissipation_remark,
     dragged_check,
     energy_check,
-    excess_of_strength,
     geometry,
     is_of_the_paper,
     not_claimed,
@@ -32,7 +29,6 @@ from workflows.verification.paper_penetration_checks import (
     states_picture,
 )
 from workflows.verification.penetration import (
-    PenetrationResult,
     penetrate,
     surface,
 )
@@ -42,27 +38,16 @@ from workflows.verification.problem import (
     Problem,
     Series,
     at_most,
-    relative,
 )
 from workflows.verification.references import prototype
 
 Pascal = Annotated[float, Unit("Pa")]
 Stiffness = Annotated[float, Unit("Pa/m")]
 Metre = Annotated[float, Unit("m")]
-Radian = Annotated[float, Unit("rad")]
-
-FRICTION_ANGLE = float(np.deg2rad(24.0))
-"""Of the interface in the paper's Fig. 9, in rad."""
 
 NO_EXTERNAL_REFERENCE = (
     "The paper prints no numbers for this figure. The reference is a throw-away prototype, "
     "written independently; it is no external reference."
-)
-
-NO_REFERENCE_WITH_FRICTION = (
-    "The paper shows no such run; two meshes are compared with each other. With Hencky's solid the "
-    "step ends where soil beside the tip corner has been stretched beyond ln(stretch) = 1 and has "
-    "lost ellipticity, whatever the interface law."
 )
 
 TO_PROTOTYPE = 0.01
@@ -187,65 +172,9 @@ def fig8(
     )  # fmt: skip
 
 
-def fig6_friction(
-    *,
-    E: Pascal = 10e3,
-    nu: float = 0.0,
-    kn: Stiffness = 1e8,
-    ks: Stiffness = 1e7,
-    c: Pascal = 0.1,
-    phi: Radian = FRICTION_ANGLE,
-    h_coarse: Metre = 0.5,
-    h_fine: Metre = 1.0 / 3.0,
-    penetration: Metre = 4.0,
-    width: Metre = 5.0,
-    depth: Metre = 15.0,
-    half_width: Metre = 1.0,
-    embedment: Metre = 8.0,
-    step: Metre = 0.1,
-) -> Outcome:
-    """Return the pile with the elasto-plastic interface of Fig. 9, on two meshes.
-
-    The soil is neo-Hookean: Hencky's loses ellipticity beside the tip corner before 4 m.
-    """
-    law = friction_law(kn, ks, c, phi)
-    checks: list[Check] = []
-    series: list[Series] = []
-    runs: list[Run] = []
-    results: list[PenetrationResult] = []
-    for h in (h_coarse, h_fine):
-        box = geometry(h, width, depth, half_width, embedment, step, penetration)
-        problem = replace(
-            box, youngs_modulus=E, poissons_ratio=nu, law=law, scheme=Scheme.CARRIERS,
-            is_neo_hookean=True,
-        )  # fmt: skip
-        result = penetrate(problem)
-        name = f"h = {h:.3g} m"
-        runs.append((name, problem, result))
-        excess = excess_of_strength(result, c, phi)
-        checks.append(at_most(f"({name}) steps that were cut", result.cuts, 0))
-        checks.append(at_most(f"({name}) shear beyond the strength, share", excess, 1e-9))
-        series.append(reaction_curve(name, result, {}))
-        results.append(result)
-    coarse, fine = (float(result.reaction[-1]) for result in results)
-    checks.append(relative("reaction on the coarse mesh against the fine, N/m", coarse, fine, 0.02))
-    histories = results[0].residuals + results[1].residuals
-    return Outcome(
-        tuple(checks), tuple(series), (NO_REFERENCE_WITH_FRICTION,), histories,
-        pictures=(states_picture(runs),),
-    )  # fmt: skip
-
-
 def elastic_law(kn: float, ks: float) -> CoulombInterface:
     """Return an interface that neither slips nor opens."""
     return CoulombInterface(kn, ks, cohesion=1e12)
-
-
-def friction_law(
-    kn: float = 1e8, ks: float = 1e7, c: float = 0.1, phi: float = FRICTION_ANGLE
-) -> CoulombInterface:
-    """Return the elasto-plastic interface, by default with the strength of the paper's Fig. 9."""
-    return CoulombInterface(kn, ks, cohesion=c, friction_angle=phi)
 
 
 PROBLEMS = (
@@ -254,12 +183,6 @@ PROBLEMS = (
         "FIG6-DEFAULT",
         "Pile without slip, carriers and quadratic cells",
         fig6_default,
-        is_quick=False,
-    ),
-    Problem(
-        "FIG6-FRICTION",
-        "Pile with friction in neo-Hookean soil, two meshes",
-        fig6_friction,
         is_quick=False,
     ),
     Problem("FIG8", "Pile with elastic interfaces (paper, Fig. 8)", fig8, is_quick=False),

@@ -34,6 +34,8 @@ MODULES: tuple[str, ...] = (
     "deep_cylinder",
     "flexible_load",
     "interface_shear",
+    "paper_friction",
+    "paper_hencky",
     "paper_penetration",
     "rigid_disc",
     "rotating_shaft",

@@ -76,9 +76,13 @@ def schemes(
     The column has height L0, modulus E and unit weight gamma; the ground K0 and its own modulus.
     """
     soil = HenckyElastic(E, 0.0)
-    of_column = {c.name: _column_error(c, soil, L0, gamma, rows, steps) for c in CHOICES}
     ground = Ground(gamma_ground, K0, HenckyElastic(E_ground, 0.3))
-    of_ground = {choice.name: _ground_error(choice, ground) for choice in CHOICES}
+    of_column, of_ground = {}, {}
+    residuals: list[tuple[float, ...]] = []
+    for choice in CHOICES:
+        of_column[choice.name], own = _column_error(choice, soil, L0, gamma, rows, steps)
+        of_ground[choice.name], others = _ground_error(choice, ground)
+        residuals += own + others
     remarks = tuple(
         f"{text}: " + ", ".join(f"{name} {error:.1e}" for name, error in errors.items())
         for text, errors in (
@@ -98,7 +102,7 @@ def schemes(
             if name != DEFAULT.name
         ),
     )  # fmt: skip
-    return Outcome(checks, remarks=remarks)
+    return Outcome(checks, remarks=remarks, residual_histories=tuple(residuals))
 
 
 def _body(choice: Choice, x: np.ndarray, z: np.ndarray, ground: Ground) -> Body:
@@ -122,8 +126,11 @@ def _rollers(body: Body, bottom: float, width: float) -> Prescribed:
 
 def _column_error(
     choice: Choice, soil: HenckyElastic, height: float, unit_weight: float, rows: int, steps: int
-) -> float:
-    """Return the volume mean of the error of the vertical stress over unit weight times height."""
+) -> tuple[float, list[tuple[float, ...]]]:
+    """Return the volume mean of the error of the vertical stress over unit weight times height.
+
+    And the residuals of each step.
+    """
     width = height / rows
     body = _body(
         choice, np.array([0.0, width]), np.linspace(0.0, height, rows + 1), Ground(0.0, 1.0, soil)
@@ -132,10 +139,12 @@ def _column_error(
         body = with_weight_of_points(body)
     prescribed = _rollers(body, 0.0, width)
     top = body.mesh.reference_nodes[:, 1] > (1.0 - 1e-9) * height
+    residuals: list[tuple[float, ...]] = []
     for shares in pairwise(np.linspace(0.0, 1.0, steps + 1)):
         ground = Ground(unit_weight * shares[1], 1e-9, soil)
         body = body._replace(gradient=geostatic_gradient(ground, vertical=1))
-        body, result, _ = load_gravity(body, unit_weight, shares, prescribed, name=choice.name)
+        body, result, own = load_gravity(body, unit_weight, shares, prescribed, name=choice.name)
+        residuals += own
         level = (body.mesh.nodes + result.equilibrium.displacement)[top, 1].mean()
         body = mesh_to(body, stretch(body.mesh, (1.0, float(level) / height)))
     points = body.points
@@ -146,23 +155,27 @@ def _column_error(
     ).vertical_stress  # fmt: skip
     share = points.volume / points.volume_ratio
     error = np.abs(cauchy_stress(points)[:, 1, 1] - exact) @ share / share.sum()
-    return float(error / (unit_weight * height))
+    return float(error / (unit_weight * height)), residuals
 
 
-def _ground_error(choice: Choice, ground: Ground) -> float:
-    """Return the largest stress error after the mesh has moved by a cell in ten steps."""
+def _ground_error(choice: Choice, ground: Ground) -> tuple[float, list[tuple[float, ...]]]:
+    """Return the largest stress error after the mesh has moved by a cell in ten steps.
+
+    And the residuals of each step.
+    """
     depth, headroom, size = 4.0, 0.5, 0.5
     z = np.arange(-depth, headroom + 0.5 * size, size)
     body = _body(choice, np.arange(0.0, 2.0 + 0.5 * size, size), z, ground)
-    prescribed = _rollers(body, -depth, 2.0)
+    prescribed, residuals = _rollers(body, -depth, 2.0), []
     for advance_by in np.linspace(0.0, size, 11)[1:]:
         moved = translate(body.mesh, float(advance_by), -0.5 * depth, (-depth, headroom))
-        body, _ = advance(mesh_to(body, moved), prescribed, name=choice.name)
+        body, result = advance(mesh_to(body, moved), prescribed, name=choice.name)
+        residuals.append(tuple(result.equilibrium.newton.residuals))
         body = body._replace(start=np.zeros_like(body.start))
     points = body.points
     exact = geostatic_stress(ground, points.position[:, 1], 1)
     error = np.abs(cauchy_stress(points) - exact).max()
-    return float(error / (ground.unit_weight * depth))
+    return float(error / (ground.unit_weight * depth)), residuals
 
 
 PROBLEM = Problem(

@@ -55,6 +55,7 @@ def uniform_slab(
         "Mohr-Coulomb": MohrCoulomb(E, nu, 0.0, phi),
     }
     checks: list[Check] = []
+    residuals: list[tuple[float, ...]] = []
     for name, soil in soils.items():
         plane, space = (
             _deformed(_mesh(dim, 2), soil, p0, _uniform(stretch, shear)) for dim in (2, 3)
@@ -68,16 +69,21 @@ def uniform_slab(
             at_most(f"{name}: distance of the support force from plane strain over the larger",
                     np.abs(space[1] / plane[1] - 1.0).max(), SAME),
         ]  # fmt: skip
-    return Outcome(tuple(checks))
+        residuals += plane[2] + space[2]
+    return Outcome(tuple(checks), residual_histories=tuple(residuals))
 
 
 def sheared_slab(*, E: Stress = 1e6, nu: float = 0.3, shear: float = 0.1) -> Outcome:
     """Return the force on the top of a sheared block with free sides, on three meshes."""
     soil = HenckyElastic(E, nu)
-    finest = _sheared_force(_mesh(2, FINEST_2D), soil, shear)
-    plane, space = (
-        [_sheared_force(_mesh(dim, n), soil, shear) / finest - 1.0 for n in CELLS] for dim in (2, 3)
-    )
+    finest, history = _sheared_force(_mesh(2, FINEST_2D), soil, shear)
+    errors, residuals = {}, [history]
+    for dim in (2, 3):
+        for n in CELLS:
+            force, history = _sheared_force(_mesh(dim, n), soil, shear)
+            errors[dim, n] = force / finest - 1.0
+            residuals.append(history)
+    plane, space = ([errors[dim, n] for n in CELLS] for dim in (2, 3))
     return Outcome(
         (
             at_most("8 cells: force over that of the finest plane mesh, less 1", space[-1], 5e-3),
@@ -87,6 +93,7 @@ def sheared_slab(*, E: Stress = 1e6, nu: float = 0.3, shear: float = 0.1) -> Out
             f"errors with 2, 4 and 8 cells: {_in_words(plane)} of triangles,"
             f" {_in_words(space)} of tetrahedra",
         ),
+        residual_histories=tuple(residuals),
     )
 
 
@@ -112,14 +119,18 @@ def _uniform(stretch: float, shear: float) -> list[np.ndarray]:
 
 def _deformed(
     mesh: BackgroundMesh, soil: SoilParameters, pressure: float, gradients: list[np.ndarray]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the stresses (n_points, 3, 3) in Pa, and the force (2,) in N/m on the left side."""
+) -> tuple[np.ndarray, np.ndarray, list[tuple[float, ...]]]:
+    """Return the stresses (n_points, 3, 3) in Pa, and the force (2,) in N/m on the left side.
+
+    And the residuals of each step.
+    """
     body = with_stress(_block(mesh, soil, UNIFORM), soil, -pressure * np.eye(3))
     dim = mesh.nodes.shape[1]
     is_prescribed = np.zeros(mesh.nodes.shape, dtype=bool)
     x, y = mesh.nodes[:, :2].T
     is_prescribed[np.isclose(x, 0) | np.isclose(x, 1) | np.isclose(y, 0) | np.isclose(y, 1)] = True
     is_prescribed[:, 2:] = True
+    residuals = []
     for gradient in gradients:
         full = np.eye(dim)
         full[:2, :2] = gradient
@@ -131,12 +142,18 @@ def _deformed(
             move_mesh=lambda moved, nodes=nodes: moved._replace(nodes=nodes),  # type: ignore[misc]
             name="uniform deformation",
         )
+        residuals.append(tuple(result.equilibrium.newton.residuals))
     force = result.equilibrium.reaction[np.isclose(x, 0.0), :2].sum(axis=0)
-    return cauchy_stress(body.points), force / _thickness(mesh)
+    return cauchy_stress(body.points), force / _thickness(mesh), residuals
 
 
-def _sheared_force(mesh: BackgroundMesh, soil: SoilParameters, shear: float) -> float:
-    """Return the horizontal force in N/m that moves the top of a block by ``shear``."""
+def _sheared_force(
+    mesh: BackgroundMesh, soil: SoilParameters, shear: float
+) -> tuple[float, tuple[float, ...]]:
+    """Return the horizontal force in N/m that moves the top of a block by ``shear``.
+
+    And the residuals of the step.
+    """
     body = _block(mesh, soil, NUMERICS)
     y = mesh.nodes[:, 1]
     is_prescribed = np.zeros(mesh.nodes.shape, dtype=bool)
@@ -150,7 +167,7 @@ def _sheared_force(mesh: BackgroundMesh, soil: SoilParameters, shear: float) -> 
         name="sheared block",
     )
     force = result.equilibrium.reaction[np.isclose(y, 1.0), 0].sum()
-    return float(force) / _thickness(mesh)
+    return float(force) / _thickness(mesh), tuple(result.equilibrium.newton.residuals)
 
 
 def _block(mesh: BackgroundMesh, soil: SoilParameters, numerics: Numerics) -> Body:

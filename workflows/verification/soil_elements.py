@@ -134,6 +134,7 @@ def pe2(
             Series("volume", "axial shortening", "volumetric strain", tuple(x), tuple(volume),
                    tuple(exact.volumetric_strain)),
         ),
+        residual_histories=_histories(path),
     )  # fmt: skip
 
 
@@ -171,6 +172,7 @@ def pe3(
         ),
         series=(Series("undrained triaxial test", "axial shortening", "q, Pa", x, tuple(q),
                        tuple(exact)),),
+        residual_histories=_histories(path),
     )  # fmt: skip
 
 
