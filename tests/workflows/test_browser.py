@@ -46,7 +46,7 @@ def browser():
     options = webdriver.ChromeOptions()
     for argument in (
         "--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1200,1000",
-        "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+        "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--remote-debugging-pipe",
     ):  # fmt: skip
         options.add_argument(argument)
     options.binary_location = shutil.which("chromium")
