@@ -2,7 +2,8 @@
 
 An average of admissible stresses is admissible where the yield surface is convex, but moving least
 squares has negative weights, and the strength is averaged too.  The soil law itself, called with no
-strain increment, brings back what lies outside and leaves all else untouched.
+strain increment, brings back what lies outside and leaves all else untouched.  An average of open
+soil, which carries no pressure until the opening has closed, with soil under pressure is closed.
 """
 
 from __future__ import annotations
@@ -17,6 +18,9 @@ from handoff.tensor_arrays import six_vectors, tensors_of
 from install_mpm.constitutive import coulomb_interface, dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.ground import GroundProfile, soils_of, undrained_shear_strength
+
+AT_REST = 1e-9
+"""Relative change of the stress that counts as none."""
 
 
 class YieldCorrections(NamedTuple):
@@ -45,6 +49,7 @@ def admissible_state(
     ValueError
         If the soil law cannot return a stress, which names the first such integration point.
     """
+    state = _with_openings_closed(ground, state)
     outside = np.flatnonzero(yield_values(ground, state) > 0.0)
     stress, strain, variables = _returned(ground, state, outside)
     corrected = state._replace(
@@ -57,6 +62,21 @@ def admissible_state(
     )
     before = six_vectors(state.cauchy_stress[outside])
     return corrected, _corrections(before, stress, len(state.material))
+
+
+def _with_openings_closed(ground: GroundProfile, state: FEState) -> FEState:
+    """Return the state without openings, but where the soil carries nothing in any case."""
+    opening = np.zeros_like(state.state_variables, dtype=bool)
+    columns = dispatch.state_columns(dispatch.pack(soils_of(ground)), "opening")[state.material]
+    has_one = np.flatnonzero(columns >= 0)
+    opening[has_one, columns[has_one]] = True
+    opening &= state.state_variables > 0.0
+    places = np.flatnonzero(opening.any(axis=1))
+    closed = state._replace(state_variables=np.where(opening, 0.0, state.state_variables))
+    with_it, without = (_returned(ground, each, places)[0] for each in (state, closed))
+    change = np.abs(with_it - without).max(axis=1)
+    opening[places[change <= AT_REST * np.abs(without).max(axis=1)]] = False
+    return state._replace(state_variables=np.where(opening, 0.0, state.state_variables))
 
 
 def _returned(

@@ -41,6 +41,7 @@ def give_state(
     enriched = inject(changed, mesh, model.cell, geometry, fill, gradient)
     if enriched is not changed:
         fill = fill_cells(enriched, mesh, model.cell, geometry, threshold)
+    enriched = _with_shared_openings(enriched, model.materials)
     quadrature, is_empty = integration_points(enriched, model.cell, geometry, fill, gradient)
     if model.has_weight_of_points:
         quadrature = _with_weight_of(enriched, quadrature)
@@ -52,6 +53,25 @@ def give_state(
         n_injected=len(enriched.mass) - len(changed.mass),
         n_merged=len(points.mass) - len(changed.mass),
     )
+
+
+def _with_shared_openings(points: MaterialPoints, materials: dispatch.Materials) -> MaterialPoints:
+    """Return the points with one opening of each soil of a cell: their mean, if all are open.
+
+    Open soil carries no pressure until it has closed.  Mixed with soil under pressure, at the
+    integration points or by smoothing, its opening would take that pressure away at rest.
+    """
+    variables = points.state_variables.copy()
+    for row, column in enumerate(dispatch.state_columns(materials, "opening")):
+        here = np.flatnonzero(points.material == row)
+        if column < 0 or not points.state_variables[here, column].any():
+            continue
+        opening, volume = points.state_variables[here, column], points.volume[here]
+        _, cell = np.unique(points.cell[here], return_inverse=True)
+        some_closed = np.bincount(cell, opening == 0.0) > 0.0
+        mean = np.bincount(cell, volume * opening) / np.bincount(cell, volume)
+        variables[here, column] = np.where(some_closed, 0.0, mean)[cell]
+    return points._replace(state_variables=variables)
 
 
 def integration_points(

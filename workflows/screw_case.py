@@ -11,7 +11,7 @@ from handoff.screw_mesh import largest_size
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import GroundProfile
-from install_mpm.options import Box, Numerics, ScrewMeshOptions
+from install_mpm.options import Box, ScrewMeshOptions, ScrewNumerics
 from install_mpm.screw_pile import Helix, ScrewPile
 from install_mpm.screw_pile_mesh import WALL_SIDES
 from install_mpm.screw_programme import (
@@ -59,7 +59,7 @@ class ScrewCase:
     box: Box
     background_mesh: ScrewMeshOptions
     installation: ScrewProgramme
-    numerics: Numerics
+    numerics: ScrewNumerics
     handoff: HandoffOptions | None = None
     """Without it and ``service`` the run ends after the installation."""
     service: ServiceOptions | None = None

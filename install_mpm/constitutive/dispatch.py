@@ -71,18 +71,24 @@ def state_variable_names(soil: SoilParameters) -> tuple[str, ...]:
     return undrained.STATE_VARIABLES + names if pore_fluid_bulk_modulus(soil) > 0.0 else names
 
 
+def state_columns(materials: Materials, name: str) -> np.ndarray:
+    """Return the column (n_materials,) of the state variable ``name``, -1 where there is none."""
+    columns = np.full(len(materials.model), -1)
+    for row, (model, parameters) in enumerate(zip(*materials, strict=True)):
+        names = MODULE_OF[Model(model)].STATE_VARIABLES
+        if name in names:
+            before = undrained.N_STATE if parameters[undrained.FLUID] > 0.0 else 0
+            columns[row] = before + names.index(name)
+    return columns
+
+
 def log_volume_columns(materials: Materials) -> np.ndarray:
     """Return the column (n_materials,) of ``plastic_log_volume``, -1 where there is none.
 
     Undrained soil has none: its volume is in the elastic strain.
     """
-    name = "plastic_log_volume"
-    columns = np.full(len(materials.model), -1)
-    for row, (model, parameters) in enumerate(zip(*materials, strict=True)):
-        names = MODULE_OF[Model(model)].STATE_VARIABLES
-        if name in names and parameters[undrained.FLUID] == 0.0:
-            columns[row] = names.index(name)
-    return columns
+    is_drained = materials.parameters[:, undrained.FLUID] == 0.0
+    return np.where(is_drained, state_columns(materials, "plastic_log_volume"), -1)
 
 
 def is_linear_elastic(soil: SoilParameters) -> bool:

@@ -7,15 +7,9 @@ the help of the turning of the axes: where axes a and b turn into each other the
 
 from __future__ import annotations
 
-import numpy as np
-
 from install_mpm._jit import jit
-from install_mpm.constitutive.eigen import symmetric_eigen
-from install_mpm.constitutive.mandel import SQRT2, from_mandel
-
-FIRST = np.array([0, 0, 1])
-SECOND = np.array([1, 2, 2])
-"""Pairs of principal axes that turn into each other."""
+from install_mpm.constitutive.eigen import eigen_pairs
+from install_mpm.constitutive.mandel import SQRT2
 
 
 @jit
@@ -23,26 +17,35 @@ def principal_axes(vector, values, dyads):
     """Fill the principal ``values`` (3,), largest first, and ``dyads`` (6, 6) of a six-vector.
 
     Rows of ``dyads`` are orthonormal six-vectors: n_a n_a of the three axes, then sqrt(2) times the
-    symmetric n_a n_b of the pairs ``FIRST``, ``SECOND``.
+    symmetric n_a n_b of the pairs 01, 02 and 12.
     """
-    tensor, axes = np.empty((3, 3)), np.empty((3, 3))
-    from_mandel(vector, tensor)
-    symmetric_eigen(tensor, values, axes)
-    for a, b in ((0, 1), (0, 2), (1, 2)):
-        if values[a] < values[b]:
-            values[a], values[b] = values[b], values[a]
-            for i in range(3):
-                axes[i, a], axes[i, b] = axes[i, b], axes[i, a]
-    for a in range(3):
-        x, y, z = axes[0, a], axes[1, a], axes[2, a]
-        dyads[a, 0], dyads[a, 1], dyads[a, 2] = x * x, y * y, z * z
-        dyads[a, 3], dyads[a, 4], dyads[a, 5] = SQRT2 * x * y, SQRT2 * x * z, SQRT2 * y * z
-        b, c = FIRST[a], SECOND[a]
-        for i in range(3):
-            dyads[3 + a, i] = SQRT2 * axes[i, b] * axes[i, c]
-        dyads[3 + a, 3] = axes[0, b] * axes[1, c] + axes[1, b] * axes[0, c]
-        dyads[3 + a, 4] = axes[0, b] * axes[2, c] + axes[2, b] * axes[0, c]
-        dyads[3 + a, 5] = axes[1, b] * axes[2, c] + axes[2, b] * axes[1, c]
+    xx, yy, zz, x, y, z = eigen_pairs(
+        vector[0], vector[1], vector[2],
+        vector[3] / SQRT2, vector[4] / SQRT2, vector[5] / SQRT2,
+    )  # fmt: skip
+    if xx < yy:
+        xx, yy, x, y = yy, xx, y, x
+    if xx < zz:
+        xx, zz, x, z = zz, xx, z, x
+    if yy < zz:
+        yy, zz, y, z = zz, yy, z, y
+    values[0], values[1], values[2] = xx, yy, zz
+    _fill_dyad(x, x, 1.0, dyads[0])
+    _fill_dyad(y, y, 1.0, dyads[1])
+    _fill_dyad(z, z, 1.0, dyads[2])
+    _fill_dyad(x, y, SQRT2, dyads[3])
+    _fill_dyad(x, z, SQRT2, dyads[4])
+    _fill_dyad(y, z, SQRT2, dyads[5])
+
+
+@jit
+def _fill_dyad(x, y, factor, dyad):
+    """Fill the six-vector ``dyad`` with ``factor`` times the symmetric product of x and y (3,)."""
+    half = 0.5 * SQRT2 * factor
+    dyad[0], dyad[1], dyad[2] = factor * x[0] * y[0], factor * x[1] * y[1], factor * x[2] * y[2]
+    dyad[3] = half * (x[0] * y[1] + x[1] * y[0])
+    dyad[4] = half * (x[0] * y[2] + x[2] * y[0])
+    dyad[5] = half * (x[1] * y[2] + x[2] * y[1])
 
 
 @jit
@@ -64,25 +67,36 @@ def tangent_from_principal(strain, stress, dyads, principal_tangent, largest, ta
         Bound in Pa on the stiffness of turning, 2 G: it only matters for round-off where two
         strains are nearly equal.  Equal strains have equal stresses in a law with edges.
     """
-    rows = np.empty((6, 3))
+    turning = (
+        _turning(strain, stress, 0, 1, largest),
+        _turning(strain, stress, 0, 2, largest),
+        _turning(strain, stress, 1, 2, largest),
+    )
     for i in range(6):
-        for b in range(3):
-            rows[i, b] = (
-                dyads[0, i] * principal_tangent[0, b]
-                + dyads[1, i] * principal_tangent[1, b]
-                + dyads[2, i] * principal_tangent[2, b]
-            )
-    for i in range(6):
+        row = dyads[:, i]
+        first = _times_column(row, principal_tangent, 0)
+        second = _times_column(row, principal_tangent, 1)
+        third = _times_column(row, principal_tangent, 2)
         for j in range(6):
             tangent[i, j] = (
-                rows[i, 0] * dyads[0, j] + rows[i, 1] * dyads[1, j] + rows[i, 2] * dyads[2, j]
+                first * dyads[0, j]
+                + second * dyads[1, j]
+                + third * dyads[2, j]
+                + turning[0] * row[3] * dyads[3, j]
+                + turning[1] * row[4] * dyads[4, j]
+                + turning[2] * row[5] * dyads[5, j]
             )
-    for pair in range(3):
-        a, b = FIRST[pair], SECOND[pair]
-        if stress[a] == stress[b] or strain[a] == strain[b]:
-            continue
-        turning = min((stress[a] - stress[b]) / (strain[a] - strain[b]), largest)
-        for i in range(6):
-            scaled = turning * dyads[3 + pair, i]
-            for j in range(6):
-                tangent[i, j] += scaled * dyads[3 + pair, j]
+
+
+@jit
+def _times_column(row, matrix, b):
+    """Return the product of the first three of ``row`` with column b of ``matrix`` (3, 3)."""
+    return row[0] * matrix[0, b] + row[1] * matrix[1, b] + row[2] * matrix[2, b]
+
+
+@jit
+def _turning(strain, stress, a, b, largest):
+    """Return the stiffness in Pa against the turning of the principal axes a and b."""
+    if stress[a] == stress[b] or strain[a] == strain[b]:
+        return 0.0
+    return min((stress[a] - stress[b]) / (strain[a] - strain[b]), largest)

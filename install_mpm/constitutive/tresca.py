@@ -14,7 +14,6 @@ from __future__ import annotations
 import numpy as np
 
 from install_mpm._jit import jit
-from install_mpm.constitutive.eigen import symmetric_eigen
 from install_mpm.constitutive.elastic import (  # the elastic part of the law is shared
     BULK,
     SHEAR,
@@ -22,7 +21,12 @@ from install_mpm.constitutive.elastic import (  # the elastic part of the law is
     elastic_stress,
     elastic_tangent,
 )
-from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE, SQRT2, from_mandel, trace
+from install_mpm.constitutive.mandel import SQRT2, trace
+from install_mpm.constitutive.principal import (
+    from_principal,
+    principal_axes,
+    tangent_from_principal,
+)
 from install_mpm.constitutive.remoulding import (
     MAX_ITERATIONS,
     REMOULDED,
@@ -52,30 +56,12 @@ __all__ = [
 
 
 @jit
-def principal(vector, values, vectors):
-    """Fill principal values (3,), largest first, and directions (3, 3), columns, of a six-vector.
-
-    Returns the indices of the largest, middle and smallest value in ``values``.
-    """
-    tensor = np.empty((3, 3))
-    from_mandel(vector, tensor)
-    symmetric_eigen(tensor, values, vectors)
-    major = 0 if values[0] >= values[1] and values[0] >= values[2] else 1
-    if values[2] > values[major]:
-        major = 2
-    minor = (major + 1) % 3
-    if values[(major + 2) % 3] < values[minor]:
-        minor = (major + 2) % 3
-    return major, 3 - major - minor, minor
-
-
-@jit
 def yield_function(stress, parameters, state):
     """Return f in Pa; zero or negative is admissible."""
-    values, vectors = np.empty(3), np.empty((3, 3))
-    major, _, minor = principal(stress, values, vectors)
+    values, dyads = np.empty(3), np.empty((6, 6))
+    principal_axes(stress, values, dyads)
     strength, _ = remoulded_strength(state[STRENGTH], state[PLASTIC_SHEAR], parameters)
-    return values[major] - values[minor] - 2.0 * strength
+    return values[0] - values[2] - 2.0 * strength
 
 
 @jit
@@ -90,38 +76,32 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
     if deviator_norm(stress) <= SQRT2 * strength:
         return 0  # the cylinder of von Mises lies inside the prism
 
-    trial, directions = np.empty(3), np.empty((3, 3))
-    major, middle, minor = principal(trial_strain, trial, directions)
-    excess = 2.0 * shear * (trial[major] - trial[minor]) - 2.0 * strength
+    trial, dyads = np.empty(3), np.empty((6, 6))
+    principal_axes(trial_strain, trial, dyads)
+    excess = 2.0 * shear * (trial[0] - trial[2]) - 2.0 * strength
     if excess <= 0.0:
         return 0
     if not np.isfinite(excess):
         return NOT_FINITE
 
     returned, principal_tangent = np.empty(3), np.empty((3, 3))
-    if not _return_softened(
-        trial, major, middle, minor, strength, parameters, state_old, returned, principal_tangent
-    ):
+    if not _return_softened(trial, strength, parameters, state_old, returned, principal_tangent):
         return NOT_FINITE
-    plastic = 0.0
-    elastic_strain[:] = 0.0
-    stress[:] = 0.0
-    mean = trace(trial_strain) / 3.0
+    tangent_from_principal(trial, returned, dyads, principal_tangent, 2.0 * shear, tangent)
+    plastic, mean = 0.0, trace(trial_strain) / 3.0
     for a in range(3):
-        plastic += (trial[a] - mean - returned[a] / (2.0 * shear)) ** 2
-        for component in range(6):
-            dyad = _dyad(directions, a, a, component)
-            elastic_strain[component] += (mean + returned[a] / (2.0 * shear)) * dyad
-            stress[component] += (3.0 * parameters[BULK] * mean + returned[a]) * dyad
+        elastic = mean + returned[a] / (2.0 * shear)
+        plastic += (trial[a] - elastic) ** 2
+        trial[a] = elastic
+        returned[a] += 3.0 * parameters[BULK] * mean
+    from_principal(trial, dyads, elastic_strain)
+    from_principal(returned, dyads, stress)
     state[PLASTIC_SHEAR] += SQRT2 * np.sqrt(plastic)
-    _turn_tangent(trial, returned, directions, principal_tangent, 2.0 * shear, tangent)
     return 0
 
 
 @jit
-def _return_softened(
-    trial, major, middle, minor, strength, parameters, state_old, returned, tangent
-):
+def _return_softened(trial, strength, parameters, state_old, returned, tangent):
     """Fill what ``_return_principal`` fills, with the strength that the return leaves.
 
     ``strength`` in Pa is that before it.  Returns whether it was found: s_u = s_u(xi), xi = xi_old
@@ -132,9 +112,7 @@ def _return_softened(
     mean = (trial[0] + trial[1] + trial[2]) / 3.0
     plastic, by_strength = np.empty(3), np.empty(3)
     for _ in range(MAX_ITERATIONS):
-        _return_principal(
-            trial, major, middle, minor, strength, parameters, returned, tangent, by_strength
-        )
+        _return_principal(trial, strength, parameters, returned, tangent, by_strength)
         if parameters[REMOULDED] == 1.0:
             return True
         norm = along = 0.0
@@ -161,72 +139,37 @@ def _return_softened(
 
 
 @jit
-def _return_principal(
-    trial, major, middle, minor, strength, parameters, returned, tangent, by_strength
-):
+def _return_principal(trial, strength, parameters, returned, tangent, by_strength):
     """Fill deviators (3,) of the returned stress and d(stress)/d(strain) (3, 3), principal axes.
 
     ``by_strength`` (3,) is filled with the derivatives of the deviators by the strength.
     """
     bulk, shear = parameters[BULK], parameters[SHEAR]
     mean = (trial[0] + trial[1] + trial[2]) / 3.0
-    between = 2.0 * shear * (trial[middle] - mean)
-    centre = shear * (trial[major] + trial[minor] - 2.0 * mean)
+    between = 2.0 * shear * (trial[1] - mean)
+    centre = shear * (trial[0] + trial[2] - 2.0 * mean)
     tangent[:, :] = bulk
     if between >= centre + strength:  # edge of equal major and middle stress
-        returned[major] = returned[middle] = 2.0 / 3.0 * strength
-        returned[minor] = -4.0 / 3.0 * strength
-        by_strength[major] = by_strength[middle] = 2.0 / 3.0
-        by_strength[minor] = -4.0 / 3.0
+        returned[0] = returned[1] = 2.0 / 3.0 * strength
+        returned[2] = -4.0 / 3.0 * strength
+        by_strength[0] = by_strength[1] = 2.0 / 3.0
+        by_strength[2] = -4.0 / 3.0
         return
     if between <= centre - strength:  # edge of equal middle and minor stress
-        returned[major] = 4.0 / 3.0 * strength
-        returned[middle] = returned[minor] = -2.0 / 3.0 * strength
-        by_strength[major] = 4.0 / 3.0
-        by_strength[middle] = by_strength[minor] = -2.0 / 3.0
+        returned[0] = 4.0 / 3.0 * strength
+        returned[1] = returned[2] = -2.0 / 3.0 * strength
+        by_strength[0] = 4.0 / 3.0
+        by_strength[1] = by_strength[2] = -2.0 / 3.0
         return
-    by_strength[major], by_strength[middle], by_strength[minor] = 1.0, 0.0, -1.0
-    returned[major], returned[minor] = centre + strength, centre - strength
-    returned[middle] = between
+    by_strength[0], by_strength[1], by_strength[2] = 1.0, 0.0, -1.0
+    returned[0], returned[2] = centre + strength, centre - strength
+    returned[1] = between
     # on the plane 2 G I_dev loses what moves major and minor stress apart
     for a in range(3):
         tangent[a, a] += 2.0 * shear
         for b in range(3):
             tangent[a, b] -= 2.0 / 3.0 * shear
-    tangent[major, major] -= shear
-    tangent[minor, minor] -= shear
-    tangent[major, minor] += shear
-    tangent[minor, major] += shear
-
-
-@jit
-def _turn_tangent(trial, returned, directions, principal_tangent, largest, tangent):
-    """Fill ``tangent`` (6, 6) from the principal one and the turning of the principal axes.
-
-    Where two axes turn into each other the stress changes by (tau_a - tau_b) / (eps_a - eps_b),
-    at most ``largest`` in Pa.  Strains can only be equal where the stresses are, on an edge.
-    """
-    tangent[:, :] = 0.0
-    for a in range(3):
-        for b in range(3):
-            turning = 0.0
-            if a != b and returned[a] != returned[b] and trial[a] != trial[b]:
-                turning = (returned[a] - returned[b]) / (trial[a] - trial[b])
-                turning = min(turning, largest)  # round-off next to an edge
-            for row in range(6):
-                first, mixed = _dyad(directions, a, a, row), _dyad(directions, a, b, row)
-                for column in range(6):
-                    tangent[row, column] += principal_tangent[a, b] * first * _dyad(
-                        directions, b, b, column
-                    ) + turning * mixed * _dyad(directions, a, b, column)
-
-
-@jit
-def _dyad(directions, a, b, component):
-    """Return one Mandel component of the symmetric dyad of two principal directions."""
-    i, j = ROW[component], COLUMN[component]
-    return (
-        0.5
-        * SCALE[component]
-        * (directions[i, a] * directions[j, b] + directions[j, a] * directions[i, b])
-    )
+    tangent[0, 0] -= shear
+    tangent[2, 2] -= shear
+    tangent[0, 2] += shear
+    tangent[2, 0] += shear

@@ -6,6 +6,9 @@ import pytest
 from handoff.admissible import admissible_state, admissible_traction, yield_values
 from handoff.fe_state_file import FEState
 from handoff.geostatic import elastic_strain_of, geostatic_state
+from install_mpm.constitutive.frictional import LOG_VOLUME, OPENING
+from install_mpm.constitutive.parameters import CoulombInterface, MohrCoulomb
+from install_mpm.ground import Ground
 
 
 @pytest.fixture
@@ -62,6 +65,27 @@ def test_size_of_a_correction_is_relative_to_the_deviator(site):
     )
     assert corrected.cauchy_stress[0, 0, 1] == pytest.approx(20e3)
     assert corrections == pytest.approx((1.0, 0.5, 0.5))
+
+
+def test_soil_under_pressure_has_no_opening():
+    """Averaged with open soil, it would lose its pressure in the first step."""
+    sand = MohrCoulomb(30e6, 0.25, 1e3, 0.6, 0.1, 0.6, 0.75)
+    ground = Ground(unit_weight=18e3, k0=0.5, soil=sand)
+    calm = geostatic_state(ground, np.array([[2.0, -1.0]] * 3), np.zeros((0, 2)), np.zeros((0, 2)))
+    apex = sand.cohesion / np.tan(sand.friction_angle)
+    stress = np.array([calm.cauchy_stress[0], apex * np.eye(3), apex * np.diag([2.0, 2.0, 3.0])])
+    variables = calm.state_variables.copy()
+    variables[:, OPENING] = 0.01
+    strain = elastic_strain_of(ground, calm.material, stress, variables)
+    mixed = calm._replace(cauchy_stress=stress, elastic_strain=strain, state_variables=variables)
+    interface = CoulombInterface(1e9, 1e8)
+    corrected, corrections = admissible_state(ground, interface, np.zeros((0, 2)), mixed)
+    assert corrected.state_variables[0, OPENING] == 0.0
+    assert corrected.state_variables[1, OPENING] == 0.01
+    assert corrected.state_variables[2, OPENING] > 0.01
+    np.testing.assert_allclose(corrected.cauchy_stress[:2], stress[:2], rtol=1e-9)
+    assert np.array_equal(corrected.state_variables[:, LOG_VOLUME][:2], variables[:2, LOG_VOLUME])
+    assert corrections.share == pytest.approx(1.0 / 3.0)
 
 
 def test_tractions_are_reduced_to_the_adhesion(site):

@@ -231,3 +231,44 @@ def make_column(make_grid) -> Callable[..., Column]:
         return Column(make_grid(3, 6, width=1.5, depth=3.0, distortion=0.2), ground, **options)
 
     return make
+
+
+TANGENT_ERROR = 1e-6
+SMALLEST_DIFFERENCE = 1e-4
+"""Smallest step of a difference over the first."""
+
+
+@pytest.fixture
+def tangent_errors(record_property) -> Callable[..., np.ndarray]:
+    """Function that returns the relative error (n,) of the tangents at all states.
+
+    By central differences.  A difference across a kink of the law is no derivative: where the error
+    is too large, the step is made smaller, until the kink lies beyond it.  An error of the tangent
+    itself stays at every step.  How many states needed that is recorded.
+    """
+
+    def errors_at(
+        stress_at: Callable[[np.ndarray, np.ndarray], np.ndarray],
+        trial: np.ndarray,
+        tangent: np.ndarray,
+        scale: np.ndarray | float,
+        first_step: float,
+    ) -> np.ndarray:
+        """``stress_at`` returns the stress (m, 6) of trial strains (m, 6) of some rows (m,)."""
+        errors, rows, step = np.full(len(trial), np.inf), np.arange(len(trial)), first_step
+        scales = np.broadcast_to(scale, len(trial))
+        while len(rows) and step >= SMALLEST_DIFFERENCE * first_step:
+            worst = np.zeros(len(rows))
+            for component, direction in enumerate(np.eye(6)):
+                ends = [stress_at(trial[rows] + sign * step * direction, rows) for sign in (1, -1)]
+                derivative = (ends[0] - ends[1]) / (2.0 * step)
+                difference = np.abs(derivative - tangent[rows, :, component]).max(axis=1)
+                worst = np.maximum(worst, difference)
+            errors[rows] = np.minimum(errors[rows], worst / scales[rows])
+            rows = np.flatnonzero(errors > TANGENT_ERROR)
+            if step == first_step:
+                record_property("states beside a kink", len(rows))
+            step *= 0.1
+        return errors
+
+    return errors_at

@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from install_mpm.carriers import take_state
+from install_mpm.carriers import give_state, take_state
 from install_mpm.cell_fill import cell_geometry, fill_cells
 from install_mpm.cells import CellType, reference_cell
+from install_mpm.constitutive.frictional import OPENING
 from install_mpm.constitutive.parameters import CoulombInterface, MohrCoulomb
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground
@@ -124,6 +125,27 @@ def test_void_ratio_follows_the_volume_of_the_point(make_column, rng):
 def specific_volume(points):
     """Its logarithm, elastic and plastic part."""
     return points.state_variables[:, 0] + np.trace(points.elastic_log_strain, axis1=1, axis2=2)
+
+
+def test_openings_of_a_cell_are_shared_or_closed(make_column, rng):
+    """Sand that has opened and sand under pressure in one cell: at rest no pressure is lost."""
+    column = make_column(Ground(unit_weight=18e3, k0=0.5, soil=DENSE_SAND))
+    points = column.scattered_points(rng)
+    state = points.state_variables.copy()
+    is_open = points.cell < 3
+    state[is_open, OPENING] = rng.uniform(0.001, 0.02, is_open.sum())
+    first_of_two = np.flatnonzero(points.cell == 2)[0]
+    state[first_of_two, OPENING] = 0.0
+    points = points._replace(state_variables=state)
+    given = give_state(points, column.mesh, column.model, column.gradient)
+    opening = given.points.state_variables[:, OPENING]
+    for cell in (0, 1):
+        here, before = given.points.cell == cell, points.cell == cell
+        mean = np.average(state[before, OPENING], weights=points.volume[before])
+        np.testing.assert_allclose(opening[here], mean, rtol=1e-12)
+    assert not opening[given.points.cell > 1].any()
+    per_cell = given.quadrature.state_variables[:, OPENING].reshape(len(column.mesh.cell_nodes), -1)
+    assert not per_cell[2:].any()
 
 
 def test_collapsed_points_are_not_sound(make_column, elastic_ground, rng):

@@ -84,6 +84,10 @@ def strain_from_stress(model, stress, state):
     return strain
 
 
+def unit(vectors):
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
 def deviator(vectors):
     result = vectors.copy()
     result[..., :3] -= vectors[..., :3].mean(axis=-1, keepdims=True)
@@ -95,8 +99,7 @@ def trial_strains(rng):
     """Function that returns random trial strains (n, 6) of a given norm."""
 
     def make(size):
-        strain = rng.normal(size=(N_STATES, 6))
-        return SIZES[size] * strain / np.linalg.norm(strain, axis=1, keepdims=True)
+        return SIZES[size] * unit(rng.normal(size=(N_STATES, 6)))
 
     return make
 
@@ -107,17 +110,29 @@ def test_every_model_is_tested_here():
 
 @every_model
 @every_size
-def test_consistent_tangent_is_the_derivative_of_the_stress(model, size, trial_strains):
-    trial = trial_strains(size)
+def test_consistent_tangent_is_the_derivative_of_the_stress(model, size, rng, tangent_errors):
+    """Over 10,000 random states; a quarter has two equal principal strains, which are edges."""
+    trial = SIZES[size] * unit(rng.normal(size=(10_000, 6)))
+    trial[::4] = principal_strains(rng, np.tile([0.0, np.pi / 3], 1250), SIZES[size])
     result = evaluate(model, trial)
-    step = 1e-5 * SIZES[size]
     scale = np.abs(result.tangent).max()
-    for component, direction in enumerate(np.eye(6)):
-        forward = evaluate(model, trial + step * direction).stress
-        backward = evaluate(model, trial - step * direction).stress
-        derivative = (forward - backward) / (2.0 * step)
-        error = np.abs(result.tangent[:, :, component] - derivative).max()
-        assert error < 1e-6 * scale
+    errors = tangent_errors(
+        lambda moved, rows: evaluate(model, moved).stress,
+        trial, result.tangent, scale, 1e-5 * SIZES[size],
+    )  # fmt: skip
+    assert errors.max() < 1e-6
+
+
+def test_wrong_tangent_is_told_from_a_kink(rng, tangent_errors):
+    """A part in a hundred thousand too stiff, it is wrong at every state and every step."""
+    trial = SIZES["plastic"] * unit(rng.normal(size=(N_STATES, 6)))
+    result = evaluate(Model.TRESCA, trial)
+    scale = np.abs(result.tangent).max()
+    errors = tangent_errors(
+        lambda moved, rows: evaluate(Model.TRESCA, moved).stress,
+        trial, result.tangent + 1e-5 * scale * np.eye(6), scale, 1e-6,
+    )  # fmt: skip
+    assert errors.min() > 5e-6
 
 
 @every_model
