@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 from install_mpm.conventions import dimension
 from service_fe.loading import imposed_steps
+from service_fe.rigid_pile import n_motions
 from workflows.case import Case
 
 # Cost model, measured with 4 300 to 28 100 unknowns on a 2-core machine that was also doing other
@@ -65,7 +67,10 @@ def forecast(case: Case) -> Forecast:
     dim = dimension(case.kinematics)
     dofs, fe_dofs = dim * len(mesh.nodes), dim * len(fe_mesh.nodes)
     steps = math.ceil(round(case.installation.penetration / case.installation.step, 9))
-    service_steps = sum(len(imposed_steps(programme, 1.0)) for programme in case.service.programmes)
+    load = np.ones(n_motions(2))
+    service_steps = sum(
+        len(imposed_steps(programme, load)) for programme in case.service.programmes
+    )
     install_time = steps * INSTALL_ITERATIONS * dofs * INSTALL_SECONDS
     service_time = 2 * service_steps * SERVICE_ITERATIONS * fe_dofs * SERVICE_SECONDS
     return Forecast(
