@@ -28,6 +28,9 @@ def test_case_runs_through_all_stages(name, tmp_path):
     certificate = json.loads((tmp_path / "out" / names.CERTIFICATE).read_text(encoding="utf-8"))
     assert all(figure["is_met"] for figure in certificate.values())
     state = read_installed_state(tmp_path / "out" / names.INSTALLED)
-    assert state.material_points.volume_ratio.min() > 0.5
-    assert state.material_points.volume_ratio.max() < 1.5
+    ratio = state.material_points.volume_ratio
+    assert ratio.min() > 0.5
+    assert ratio.max() < 1.5
+    report = (tmp_path / "out" / names.REPORT).read_text(encoding="utf-8")
+    assert f"{ratio.min():.3f} to {ratio.max():.3f}" in report
     assert state.history.residual_history[0, 0] < 1e-8
