@@ -147,7 +147,7 @@ def pb3(
 ) -> Outcome:
     """A rough strip of width B on weightless sand: N_q with a surcharge q, N_c with c = q.
 
-    Prandtl's and Reissner's solutions; flow is associated.  The settlement is 8 N q B / E.
+    Prandtl's and Reissner's solutions; flow is associated.  The settlement is 12 N q B / E.
     """
     if phi <= 0.0:
         raise CaseError("PB3: phi: the soil has friction; PB1 is the strip on soil without")
