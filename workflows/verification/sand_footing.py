@@ -83,7 +83,7 @@ def sand_footing(
     cohesion: float = 0.0,
     rigidity_index: float = 1e4,
     poissons_ratio: float = 0.3,
-    relative_settlement: float = 12.0,
+    relative_settlement: float = 8.0,
 ) -> SandFootingResult:
     """Return the curve of a rigid footing that is pushed down in steps that grow.
 

@@ -43,6 +43,8 @@ SIZES = (0.05, 0.0125)
 TOLERANCE = 0.05
 STEEP = np.deg2rad(35.0)
 """Angle above which the tolerance of N_q and N_c is ``TOLERANCE`` and not ``CLOSE``."""
+SETTLEMENT, STEEP_SETTLEMENT = 12.0, 16.0
+"""Final settlement times E / (q N B), and above ``STEEP``, where the plateau is reached later."""
 CLOSE = 0.03
 PLATEAU = 1e-3
 """Largest relative change of the load over the last quarter of the settlement."""
@@ -86,6 +88,7 @@ def sand_outcome(
                 unit=unit,
                 rigidity_index=rigidity_index,
                 poissons_ratio=poissons_ratio,
+                relative_settlement=STEEP_SETTLEMENT if friction_angle > STEEP else SETTLEMENT,
             )
             for size in sizes
         ]
@@ -147,7 +150,7 @@ def pb3(
 ) -> Outcome:
     """A rough strip of width B on weightless sand: N_q with a surcharge q, N_c with c = q.
 
-    Prandtl's and Reissner's solutions; flow is associated.  The settlement is 12 N q B / E.
+    Prandtl's and Reissner's solutions; flow is associated.  The settlement is 12 N q B / E, from 35 deg 16.
     """
     if phi <= 0.0:
         raise CaseError("PB3: phi: the soil has friction; PB1 is the strip on soil without")
