@@ -3,10 +3,10 @@
 Every factor is found on two meshes: it is approached from above and its error falls.  What is not
 in a table of the references, such as another angle for N_gamma, is refused.
 
-Without cohesion and surcharge (PB4) soil beside the edge of the footing is at the apex, and carries
-some ten pascals of the 150 kPa under it: there the equations are singular, and Newton's method on
-the fine mesh is linear below a residual of 1e-5 although its tangents are exact.  With a cohesion of
-1e-3 gamma B / 2 it is quadratic again under the smooth strip, and N_gamma 1 % higher.
+Without cohesion and surcharge (PB4) soil beside the edge of the footing is at the apex, or carries
+some ten pascals: there the equations are singular, and Newton's method on the fine mesh is linear
+below a residual of 1e-5 although its tangents are exact.  A cohesion of 1e-3 gamma B / 2 makes it
+quadratic under the smooth strip, not under the rough one, and raises N_gamma by 1 %.
 """
 
 from __future__ import annotations
