@@ -70,12 +70,14 @@ def installation_figures(installed: InstalledState) -> dict[str, Any]:
 
     Those of a screw pile are the last ones before the rig lets go.
     """
-    history = installed.history
+    history, points = installed.history, installed.material_points
     figures = {
         "penetration_m": float(installed.pile.penetration),
         "tip_depth_m": float(installed.pile.tip_depth),
         "steps": len(history.penetration),
-        "material_points": len(installed.material_points.mass),
+        "material_points": len(points.mass),
+        "smallest_volume_ratio": float(points.volume_ratio.min()),
+        "largest_volume_ratio": float(points.volume_ratio.max()),
     }
     if installed.kinematics == Kinematics.THREE_D:
         last = driven(history)
