@@ -116,7 +116,8 @@ SERVICE_LIMITS = """
 <h3>What limits the results in service</h3>
 <ul>
 <li>Strains in service are small: the mesh does not follow the pile.</li>
-<li>The ratio installed over wished in place is a prediction: no published measurement settles it.</li>
+<li>The ratio installed over wished in place is a prediction: no published measurement settles
+it.</li>
 <li>One mesh and one way of carrying the stress over give one answer: repeat the run with another
 <code>handoff.size_at_pile</code> and another <code>handoff.neighbours</code>, and take the
 spread as the uncertainty of the ratio.</li>
