@@ -55,7 +55,7 @@ def run(case: Case, directory: Path, advance: Advance = no_progress) -> list[str
 
 
 if __name__ == "__main__":
-    from workflows.cli import run_script
     from workflows.cli import wished as command
+    from workflows.script import run_script
 
     run_script(command)
