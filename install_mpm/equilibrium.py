@@ -116,7 +116,7 @@ def find_equilibrium(
 
     ``start`` (n_nodes, dim) is the first trial displacement in m.
     """
-    system = _StepSystem(mesh, points, fill, interface, motion, prescribed, model)
+    system = StepSystem(mesh, points, fill, interface, motion, prescribed, model)
     first = np.where(prescribed.is_prescribed, prescribed.displacement, start)
     first = np.where(system.is_free | prescribed.is_prescribed, first, 0.0).ravel()
     if prescribed.displacement.any() and not start.any():
@@ -141,7 +141,7 @@ def find_equilibrium(
     )
 
 
-def _elastic_solution(system: _StepSystem, first: np.ndarray, solve: Solve) -> np.ndarray:
+def _elastic_solution(system: StepSystem, first: np.ndarray, solve: Solve) -> np.ndarray:
     """Return the trial displacement (n_dofs,) of elastic soil: one linear solve from ``first``.
 
     Driven nodes beside nodes at rest would put all of the motion into one row of cells, far beyond
@@ -158,7 +158,7 @@ def _elastic_solution(system: _StepSystem, first: np.ndarray, solve: Solve) -> n
     return first + solve(state.tangent, -state.residual)
 
 
-class _StepSystem:
+class StepSystem:
     """Work arrays of a step, filled by every evaluation."""
 
     def __init__(

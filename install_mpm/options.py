@@ -82,6 +82,14 @@ class Numerics:
 
 
 @dataclass(frozen=True)
+class ScrewNumerics(Numerics):
+    """Numerical parameters of an installation in space."""
+
+    tolerance: Annotated[float, Gt(0), Le(1e-3)] = 1e-4
+    """Sand that leaves the pile converges slowly from there on, in a few cells at its apex."""
+
+
+@dataclass(frozen=True)
 class ScrewMeshOptions:
     """Sizes of the background mesh around a screw pile; a cell is twice as fine as it is large."""
 

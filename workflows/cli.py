@@ -219,21 +219,14 @@ def verify(
     ] = False,
 ) -> None:
     """Run reference problems; exit status 1 if one is not within its tolerance."""
-    from workflows.verification_console import print_list, verify_problems
+    from workflows.verification_console import print_list, verify_problems, write_results
 
     if is_listed:
         print_list()
         return
     files = (report_file, json_file)
     results = verify_problems(problems or (), overrides or (), quick, files, kept)
-    if json_file is not None:
-        from workflows.verification_json import write_json
-
-        write_json(results, json_file)
-    if report_file is not None:
-        from workflows.verification_report import write_report
-
-        write_report(results, report_file)
+    write_results(results, *files)
     if not all(result.is_met for result in results):
         raise typer.Exit(NOT_MET)
 

@@ -9,7 +9,7 @@ import numpy as np
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import GroundProfile
-from install_mpm.options import Box, Numerics, ScrewMeshOptions
+from install_mpm.options import Box, ScrewMeshOptions, ScrewNumerics
 from install_mpm.screw_pile import Helix, ScrewPile
 from install_mpm.screw_pile_mesh import WALL_SIDES
 from install_mpm.screw_programme import (
@@ -51,7 +51,7 @@ class ScrewCase:
     box: Box
     background_mesh: ScrewMeshOptions
     installation: ScrewProgramme
-    numerics: Numerics
+    numerics: ScrewNumerics
 
     @property
     def final_tip_depth(self) -> float:

@@ -158,6 +158,20 @@ def _table(result: Verified) -> Table:
     return table
 
 
+def write_results(
+    results: list[Verified], report_file: Path | None, json_file: Path | None
+) -> None:
+    """Write the page and the numbers, as far as files are named."""
+    if json_file is not None:
+        from workflows.verification_json import write_json
+
+        write_json(results, json_file)
+    if report_file is not None:
+        from workflows.verification_report import write_report
+
+        write_report(results, report_file)
+
+
 def print_list() -> None:
     """Print all problems with their parameters and defaults."""
     out = console()

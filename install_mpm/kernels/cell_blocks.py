@@ -2,6 +2,10 @@
 
 Notation: gx_a = grad N_a and h_a = N_a / r in the current position, d_a = d ln J / du_a and
 dbar_a = d ln Jbar / du_a, C_ijkl = d tau_ij / d l_kl, l = grad(du).
+
+Everything that has the form gx_aj M_ijkm gx_bm is gathered in one tensor M before it meets the
+nodes: per pair of dofs that is the bulk of the arithmetic.  Stiffness blocks are matrices of the
+dofs of the cell, node by node; their rows are filled in inner loops without sums, which vectorise.
 """
 
 from __future__ import annotations
@@ -12,127 +16,162 @@ from install_mpm._jit import jit
 
 
 @jit
-def add_point(gradients, weight, is_finite_strain, scratch, force, stiffness):
-    """Add tau gx_a and its derivative; ``weight`` turns tau into Cauchy stress times volume."""
+def add_force(gradients, hoop, weight, is_axisymmetric, tau, force):
+    """Add tau gx_a, and tau_22 h_a on radial dofs; ``weight`` turns tau into Cauchy times volume.
+
+    ``force`` is (n_nodes, dim).
+    """
     n_nodes, dim = gradients.shape
-    tau, spatial = scratch.tensor, scratch.spatial
-    traction, contracted = scratch.traction, scratch.contracted
     for a in range(n_nodes):
         for i in range(dim):
-            traction[i] = 0.0
+            total = 0.0
             for j in range(dim):
-                traction[i] += weight * tau[i, j] * gradients[a, j]
-            force[a, i] += traction[i]
-            for k in range(dim):
-                for m in range(dim):
-                    total = 0.0
-                    for j in range(dim):
-                        total += gradients[a, j] * spatial[i, j, k, m]
-                    contracted[i, k, m] = weight * total
-        for b in range(n_nodes):
-            for i in range(dim):
-                for k in range(dim):
-                    total = 0.0
-                    for m in range(dim):
-                        total += contracted[i, k, m] * gradients[b, m]
-                    stiffness[a, i, b, k] += total
-        if is_finite_strain:
-            # the gradient itself changes: d(gx_a) = -l^T gx_a
-            for b in range(n_nodes):
-                for i in range(dim):
-                    stress = 0.0
-                    for j in range(dim):
-                        stress += tau[i, j] * gradients[b, j]
-                    for k in range(dim):
-                        stiffness[a, i, b, k] -= weight * stress * gradients[a, k]
+                total += tau[i, j] * gradients[a, j]
+            force[a, i] += weight * total
+        if is_axisymmetric:
+            force[a, 0] += weight * tau[2, 2] * hoop[a]
 
 
 @jit
-def add_hoop(gradients, hoop, weight, is_finite_strain, scratch, force, stiffness):
+def gather_moduli(weight, swapped, is_finite_strain, scratch):
+    """Fill M_ijkm = weight (C_ijkm - delta_jk tau_im) + swapped delta_jk delta_im.
+
+    The second term is d(gx_a) = -l^T gx_a of finite strain, the last one gives
+    swapped gx_ak gx_bi.
+    """
+    tau, spatial, moduli = scratch.tensor, scratch.spatial, scratch.moduli
+    dim = moduli.shape[0]
+    for i in range(dim):
+        for j in range(dim):
+            for k in range(dim):
+                for m in range(dim):
+                    moduli[i, j, k, m] = weight * spatial[i, j, k, m]
+            if is_finite_strain:
+                for m in range(dim):
+                    moduli[i, j, j, m] -= weight * tau[i, m]
+            moduli[i, j, j, i] += swapped
+
+
+@jit
+def add_moduli(gradients, scratch, stiffness):
+    """Add gx_aj M_ijkm gx_bm to ``stiffness`` (n_dofs, n_dofs)."""
+    n_nodes, dim = gradients.shape
+    moduli, columns = scratch.moduli, scratch.columns
+    for i in range(dim):
+        for j in range(dim):
+            for b in range(n_nodes):
+                for k in range(dim):
+                    total = 0.0
+                    for m in range(dim):
+                        total += moduli[i, j, k, m] * gradients[b, m]
+                    columns[i, j, b * dim + k] = total
+    for a in range(n_nodes):
+        for i in range(dim):
+            for j in range(dim):
+                _add_scaled(gradients[a, j], columns[i, j], stiffness[a * dim + i])
+
+
+@jit
+def _add_scaled(factor, vector, total):
+    """Add ``factor`` times ``vector`` to ``total``."""
+    for entry in range(vector.shape[0]):
+        total[entry] += factor * vector[entry]
+
+
+@jit
+def add_product(left, right, stiffness):
+    """Add the product of two vectors (n_dofs,) to ``stiffness`` (n_dofs, n_dofs)."""
+    for row in range(left.shape[0]):
+        _add_scaled(left[row], right, stiffness[row])
+
+
+@jit
+def add_hoop(gradients, hoop, weight, swapped, is_finite_strain, scratch, stiffness):
     """Add what the hoop stress of an axisymmetric cell does: tau_22 h_a on the radial dofs."""
     n_nodes, dim = gradients.shape
     tau, spatial = scratch.tensor, scratch.spatial
     geometric = tau[2, 2] if is_finite_strain else 0.0
+    hoop_by_hoop = weight * (spatial[2, 2, 2, 2] - geometric) + swapped
     for a in range(n_nodes):
-        force[a, 0] += weight * tau[2, 2] * hoop[a]
         for b in range(n_nodes):
-            stiffness[a, 0, b, 0] += weight * (spatial[2, 2, 2, 2] - geometric) * hoop[a] * hoop[b]
+            stiffness[a * dim, b * dim] += hoop_by_hoop * hoop[a] * hoop[b]
             for i in range(dim):
                 plane_by_hoop = 0.0
                 hoop_by_plane = 0.0
                 for j in range(dim):
                     plane_by_hoop += gradients[a, j] * spatial[i, j, 2, 2]
                     hoop_by_plane += spatial[2, 2, i, j] * gradients[b, j]
-                stiffness[a, i, b, 0] += weight * plane_by_hoop * hoop[b]
-                stiffness[a, 0, b, i] += weight * hoop_by_plane * hoop[a]
+                stiffness[a * dim + i, b * dim] += weight * plane_by_hoop * hoop[b]
+                stiffness[a * dim, b * dim + i] += weight * hoop_by_plane * hoop[a]
 
 
 @jit
-def add_dilatation_coupling(gradients, hoop, divergence, weight, n_axes, scratch, stiffness):
-    """Add what d ln Jbar - d ln J = (dbar_b - d_b) . du_b does to the forces of a point.
-
-    It scales dF in ``n_axes`` axes, and it takes volume from the point (``weight`` holds J / Jbar).
-    """
-    n_nodes, dim = gradients.shape
-    tau, spatial, mean = scratch.tensor, scratch.spatial, scratch.mean_divergence
-    for a in range(n_nodes):
-        for i in range(dim):
-            response = 0.0
-            for j in range(dim):
-                stretch = -tau[i, j]
-                for m in range(n_axes):
-                    stretch += spatial[i, j, m, m] / n_axes
-                response += stretch * gradients[a, j]
-            if i == 0:
-                stretch = -tau[2, 2]
-                for m in range(n_axes):
-                    stretch += spatial[2, 2, m, m] / n_axes
-                response += stretch * hoop[a]
-            for b in range(n_nodes):
-                for k in range(dim):
-                    stiffness[a, i, b, k] += weight * response * (mean[b, k] - divergence[b, k])
-
-
-@jit
-def add_volumetric_term(first, last, mean_ratio, modulus, points, scratch, force, stiffness):
-    """Add force and stiffness of the energy (h_v/2) sum v ln(J/Jbar)^2."""
-    n_nodes, dim = scratch.mean_divergence.shape
-    mean = scratch.mean_divergence
+def volume_modes(first, last, mean_ratio, points, scratch):
+    """Return the sums v J and v ln(J/Jbar) over the points of a cell in m^3."""
     deformed_volume = 0.0
     total_strain = 0.0
     for q in range(first, last):
-        if points.volume[q] == 0.0:
-            continue
-        deformed_volume += points.volume[q] * scratch.jacobian[q - first]
-        total_strain += points.volume[q] * np.log(scratch.jacobian[q - first] / mean_ratio)
-    for q in range(first, last):
-        if points.volume[q] == 0.0:
-            continue
-        local = q - first
-        gradients, hoop = scratch.gradients[local], scratch.hoop[local]
-        divergence = scratch.divergence[local]
-        volume, jacobian = points.volume[q], scratch.jacobian[local]
-        pressure = modulus * volume * np.log(jacobian / mean_ratio)
-        curvature = modulus * total_strain * volume * jacobian / deformed_volume
-        for a in range(n_nodes):
-            for i in range(dim):
-                difference = divergence[a, i] - mean[a, i]
-                force[a, i] += pressure * difference
-                for b in range(n_nodes):
-                    for k in range(dim):
-                        swapped = gradients[a, k] * gradients[b, i]
-                        if i == 0 and k == 0:
-                            swapped += hoop[a] * hoop[b]
-                        stiffness[a, i, b, k] += (
-                            modulus * volume * difference * (divergence[b, k] - mean[b, k])
-                            - pressure * swapped
-                            - curvature * (divergence[a, i] * divergence[b, k] - swapped)
-                        )
+        if points.volume[q] > 0.0:
+            jacobian = scratch.jacobian[q - first]
+            deformed_volume += points.volume[q] * jacobian
+            total_strain += points.volume[q] * np.log(jacobian / mean_ratio)
+    return deformed_volume, total_strain
+
+
+@jit
+def add_dilatation(
+    gradients, hoop, divergence, weight, modulus_volume, pressure, curvature, n_axes, scratch,
+    force, stiffness,
+):  # fmt: skip
+    """Add what the mean dilatation and the volumetric term do at a point.
+
+    d ln Jbar - d ln J = (dbar_b - d_b) . du_b scales dF in ``n_axes`` axes, and it takes volume
+    from the point (``weight`` holds J / Jbar).  The energy (h_v/2) v ln(J/Jbar)^2 adds the force
+    ``pressure`` (d_a - dbar_a); ``modulus_volume`` is h_v v, ``curvature`` the factor of -d_a d_b.
+    """
+    n_nodes, dim = gradients.shape
+    left, right, stretch = scratch.left, scratch.right, scratch.stretch
+    _fill_stretch(n_axes, scratch)
     for a in range(n_nodes):
         for i in range(dim):
-            for b in range(n_nodes):
-                for k in range(dim):
-                    stiffness[a, i, b, k] += modulus * total_strain * mean[a, i] * mean[b, k]
+            response = stretch[2, 2] * hoop[a] if i == 0 else 0.0
+            for j in range(dim):
+                response += stretch[i, j] * gradients[a, j]
+            difference = divergence[a, i] - scratch.mean_divergence[a, i]
+            force[a, i] += pressure * difference
+            left[a * dim + i] = modulus_volume * difference - weight * response
+            right[a * dim + i] = difference
+    add_product(left, right, stiffness)
+    if curvature == 0.0:
+        return
+    for a in range(n_nodes):
+        for i in range(dim):
+            left[a * dim + i] = -curvature * divergence[a, i]
+            right[a * dim + i] = divergence[a, i]
+    add_product(left, right, stiffness)
+
+
+@jit
+def _fill_stretch(n_axes, scratch):
+    """Fill the change of tau, less tau itself, by a unit of ln J shared by ``n_axes`` axes."""
+    tau, spatial, stretch = scratch.tensor, scratch.spatial, scratch.stretch
+    for i in range(3):
+        for j in range(3):
+            stretch[i, j] = -tau[i, j]
+            for m in range(n_axes):
+                stretch[i, j] += spatial[i, j, m, m] / n_axes
+
+
+@jit
+def add_mean_modes(modulus_strain, scratch, stiffness):
+    """Add ``modulus_strain`` dbar_a dbar_b, where it is h_v times the sum v ln(J/Jbar)."""
+    n_nodes, dim = scratch.mean_divergence.shape
+    left, right = scratch.left, scratch.right
+    for a in range(n_nodes):
+        for i in range(dim):
+            right[a * dim + i] = scratch.mean_divergence[a, i]
+            left[a * dim + i] = modulus_strain * scratch.mean_divergence[a, i]
+    add_product(left, right, stiffness)
 
 
 @jit
@@ -150,5 +189,5 @@ def add_soft_stiffness(
                     value += gradients[a, j] * gradients[b, j]
                 value *= stiffness_volume
                 for i in range(dim):
-                    stiffness[a, i, b, i] += value
+                    stiffness[a * dim + i, b * dim + i] += value
                     force[a, i] += value * displacement[cell_nodes[b], i]

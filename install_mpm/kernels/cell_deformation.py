@@ -71,15 +71,25 @@ def push_gradients(start, increment, jacobian, current):
             current[a, 0] = (increment[1, 1] * x - increment[1, 0] * y) / in_plane
             current[a, 1] = (increment[0, 0] * y - increment[0, 1] * x) / in_plane
         return
+    f = increment
+    c00, c01, c02 = _cross(f[1, 0], f[1, 1], f[1, 2], f[2, 0], f[2, 1], f[2, 2], jacobian)
+    c10, c11, c12 = _cross(f[2, 0], f[2, 1], f[2, 2], f[0, 0], f[0, 1], f[0, 2], jacobian)
+    c20, c21, c22 = _cross(f[0, 0], f[0, 1], f[0, 2], f[1, 0], f[1, 1], f[1, 2], jacobian)
     for a in range(start.shape[0]):
-        for j in range(3):
-            total = 0.0
-            for i in range(3):
-                n, m = (j + 1) % 3, (j + 2) % 3
-                k, l = (i + 1) % 3, (i + 2) % 3
-                cofactor = increment[n, k] * increment[m, l] - increment[n, l] * increment[m, k]
-                total += cofactor * start[a, i] / jacobian
-            current[a, j] = total
+        x, y, z = start[a, 0], start[a, 1], start[a, 2]
+        current[a, 0] = c00 * x + c01 * y + c02 * z
+        current[a, 1] = c10 * x + c11 * y + c12 * z
+        current[a, 2] = c20 * x + c21 * y + c22 * z
+
+
+@jit
+def _cross(ax, ay, az, bx, by, bz, divisor):
+    """Return the cross product of a and b over ``divisor``: a row of the inverse transpose."""
+    return (
+        (ay * bz - az * by) / divisor,
+        (az * bx - ax * bz) / divisor,
+        (ax * by - ay * bx) / divisor,
+    )
 
 
 @jit

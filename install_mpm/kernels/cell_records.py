@@ -55,10 +55,15 @@ class Scratch(NamedTuple):
     """tau, (3, 3)."""
     values: np.ndarray
     vectors: np.ndarray
-    traction: np.ndarray
-    """tau gx_a times volume, (dim,)."""
-    contracted: np.ndarray
-    """gx_a C times volume, (dim, 3, 3)."""
+    moduli: np.ndarray
+    """M, see ``cell_blocks``, (dim, dim, dim, dim)."""
+    columns: np.ndarray
+    """M gx_b, (dim, dim, n_dofs)."""
+    stretch: np.ndarray
+    """Change of the forces of a point with its share of the mean dilatation, (3, 3)."""
+    left: np.ndarray
+    right: np.ndarray
+    """Vectors (n_dofs,) whose product is added to the stiffness."""
 
 
 @jit
@@ -79,8 +84,11 @@ def make_scratch(most_points, n_nodes, dim):
         np.empty((3, 3)),
         np.empty(3),
         np.empty((3, 3)),
-        np.empty(dim),
-        np.empty((dim, 3, 3)),
+        np.empty((dim, dim, dim, dim)),
+        np.empty((dim, dim, n_nodes * dim)),
+        np.empty((3, 3)),
+        np.empty(n_nodes * dim),
+        np.empty(n_nodes * dim),
     )
 
 

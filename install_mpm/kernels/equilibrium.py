@@ -12,6 +12,8 @@ only*: it resists the volume modes that the mean leaves free and is never stored
 
 from __future__ import annotations
 
+import numpy as np
+
 from install_mpm._jit import jit, parallel_jit, prange
 from install_mpm.constitutive.dispatch import update_stress
 from install_mpm.constitutive.hencky import (
@@ -22,11 +24,14 @@ from install_mpm.constitutive.hencky import (
 )
 from install_mpm.constitutive.mandel import from_mandel
 from install_mpm.kernels.cell_blocks import (
-    add_dilatation_coupling,
+    add_dilatation,
+    add_force,
     add_hoop,
-    add_point,
+    add_mean_modes,
+    add_moduli,
     add_soft_stiffness,
-    add_volumetric_term,
+    gather_moduli,
+    volume_modes,
 )
 from install_mpm.kernels.cell_deformation import deform_cell, scale_volume
 from install_mpm.kernels.cell_records import (
@@ -49,6 +54,7 @@ def evaluate_cells(
     """
     n_cells, n_nodes = cell_nodes.shape
     dim = displacement.shape[1]
+    n_dofs = n_nodes * dim
     most_points = 0
     for c in range(n_cells):
         most_points = max(most_points, points.cell_start[c + 1] - points.cell_start[c])
@@ -60,7 +66,7 @@ def evaluate_cells(
             if is_active[c]:
                 _evaluate_cell(
                     c, cell_nodes[c], points, displacement, materials, options, scratch,
-                    force[c], stiffness[c], trial,
+                    force[c], stiffness[c].reshape(n_dofs, n_dofs), trial,
                 )  # fmt: skip
 
 
@@ -68,7 +74,7 @@ def evaluate_cells(
 def _evaluate_cell(
     c, cell_nodes, points, displacement, materials, options, scratch, force, stiffness, trial
 ):
-    """Fill force, stiffness and trial state of cell ``c``."""
+    """Fill force (n_nodes, dim), stiffness (n_dofs, n_dofs) and trial state of cell ``c``."""
     trial.status[c] = 0
     first, last = points.cell_start[c], points.cell_start[c + 1]
     mean_ratio = deform_cell(first, last, cell_nodes, points, displacement, options, scratch)
@@ -77,6 +83,10 @@ def _evaluate_cell(
         return
     trial.cell_volume_ratio[c] = mean_ratio
     n_axes = dilatation_axes(displacement.shape[1], options.is_axisymmetric)
+    modulus, cell_volume, cell_strain = 0.0, 1.0, 0.0
+    if options.has_mean_dilatation and options.volumetric_term[c] > 0.0:
+        modulus = options.volumetric_term[c]
+        cell_volume, cell_strain = volume_modes(first, last, mean_ratio, points, scratch)
     for q in range(first, last):
         if points.volume[q] == 0.0:
             continue
@@ -85,13 +95,13 @@ def _evaluate_cell(
         ):
             trial.status[c] = LAW_FAILED
             return
+        curvature = modulus * cell_strain / cell_volume
         _add_point(
-            q, q - first, mean_ratio, n_axes, points, options, scratch, force, stiffness, trial
-        )
-    if options.has_mean_dilatation and options.volumetric_term[c] > 0.0:
-        add_volumetric_term(
-            first, last, mean_ratio, options.volumetric_term[c], points, scratch, force, stiffness
-        )
+            q, q - first, mean_ratio, n_axes, modulus, curvature, points, options, scratch, force,
+            stiffness, trial,
+        )  # fmt: skip
+    if modulus > 0.0:
+        add_mean_modes(modulus * cell_strain, scratch, stiffness)
     if options.soft_stiffness[c] > 0.0:
         add_soft_stiffness(
             first, last, options.soft_stiffness[c], cell_nodes, points, displacement, force,
@@ -127,20 +137,33 @@ def _update_point(q, local, mean_ratio, n_axes, points, materials, options, scra
 
 
 @jit
-def _add_point(q, local, mean_ratio, n_axes, points, options, scratch, force, stiffness, trial):
-    """Store the Cauchy stress of point ``q`` and add its force and stiffness to the cell's."""
+def _add_point(
+    q, local, mean_ratio, n_axes, modulus, curvature, points, options, scratch, force, stiffness,
+    trial,
+):  # fmt: skip
+    """Store the Cauchy stress of point ``q`` and add its force and stiffness to the cell's.
+
+    ``modulus`` is h_v in Pa; ``curvature`` in Pa is h_v times the mean of ln(J/Jbar) in the cell.
+    """
     ratio = mean_ratio if options.has_mean_dilatation else scratch.jacobian[local]
     total_ratio = points.volume_ratio[q] * ratio if options.is_finite_strain else 1.0
     trial.volume_ratio[q] = ratio
     for i in range(3):
         for j in range(3):
             trial.cauchy_stress[q, i, j] = scratch.tensor[i, j] / total_ratio
-    weight = points.volume[q] * scratch.jacobian[local] / total_ratio
+    volume, jacobian = points.volume[q], scratch.jacobian[local]
+    weight = volume * jacobian / total_ratio
+    pressure = modulus * volume * np.log(jacobian / mean_ratio) if modulus > 0.0 else 0.0
+    curvature *= volume * jacobian
     gradients, hoop = scratch.gradients[local], scratch.hoop[local]
-    add_point(gradients, weight, options.is_finite_strain, scratch, force, stiffness)
-    if options.is_axisymmetric:
-        add_hoop(gradients, hoop, weight, options.is_finite_strain, scratch, force, stiffness)
+    is_finite, is_axisymmetric = options.is_finite_strain, options.is_axisymmetric
+    add_force(gradients, hoop, weight, is_axisymmetric, scratch.tensor, force)
+    gather_moduli(weight, curvature - pressure, is_finite, scratch)
+    add_moduli(gradients, scratch, stiffness)
+    if is_axisymmetric:
+        add_hoop(gradients, hoop, weight, curvature - pressure, is_finite, scratch, stiffness)
     if options.has_mean_dilatation:
-        add_dilatation_coupling(
-            gradients, hoop, scratch.divergence[local], weight, n_axes, scratch, stiffness
-        )
+        add_dilatation(
+            gradients, hoop, scratch.divergence[local], weight, modulus * volume, pressure,
+            curvature, n_axes, scratch, force, stiffness,
+        )  # fmt: skip

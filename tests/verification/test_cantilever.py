@@ -39,3 +39,10 @@ def test_full_load():
 @pytest.mark.slow
 def test_beam_of_ample():
     check_all(ample_beam(l=20.0, P=50e3))
+
+
+@pytest.mark.parametrize("problem", [cantilever, ample_beam])
+@pytest.mark.parametrize("cells", [1, 3])
+def test_an_odd_number_of_cells_is_refused(problem, cells):
+    with pytest.raises(ValueError, match=f"{cells} cells lie over the depth"):
+        problem(cells=cells)

@@ -34,6 +34,12 @@ def test_moving_mesh(parameters):
     assert_met(moving_mesh(**parameters))
 
 
+@pytest.mark.parametrize("advance_ratio", [0.6, -1.0])
+def test_moving_mesh_that_would_fold_is_refused(advance_ratio):
+    with pytest.raises(ValueError, match=r"folds the mesh: give less than 0\.6"):
+        moving_mesh(advance_ratio=advance_ratio)
+
+
 @pytest.mark.parametrize(
     "parameters",
     [{}, {"nu": 0.45, "su": 3e3, "p0": 50e3, "phi": np.radians(20.0), "shear": -0.2}],

@@ -16,7 +16,7 @@ from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.ground import Ground
 from install_mpm.history import append
 from install_mpm.installation import InstallationProgress
-from install_mpm.options import Box, Numerics, ScrewMeshOptions
+from install_mpm.options import Box, ScrewMeshOptions, ScrewNumerics
 from install_mpm.screw_pile import Helix, ScrewPile, part_names
 from install_mpm.screw_pile_mesh import generate_screw_mesh
 from install_mpm.screw_programme import Phase, Pose, ScrewProgramme, pose_at
@@ -63,7 +63,7 @@ def case():
         Box(width=2.75, depth=3.0, headroom=0.5),
         ScrewMeshOptions(0.25, 0.42, 0.4, 1.2, 0.05, points_per_direction=1),
         ScrewProgramme((Phase("in", 0.2, 1.0),), 0.06),
-        Numerics(tolerance=1e-6),
+        ScrewNumerics(tolerance=1e-6),
     )
 
 

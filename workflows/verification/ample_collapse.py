@@ -10,7 +10,7 @@ the block is elastic both discretisations have to agree with AMPLE closely.  Whe
 no exact solution: bilinear cells whose points are the quadrature lock, and so do those of the
 paper's discretisation, whose front is 4.3 % short of AMPLE's with 8 x 8 squares, 0.9 % with 16 and
 0.1 % beyond it with 24.  Of height and mean stress at full load only that discretisation is
-therefore compared, of the front both.  Mean stresses are held against statics instead: over a body
+therefore demanded, of the front both.  Mean stresses are held against statics instead: over a body
 on smooth supports through the origin the volume mean of sigma_yy is minus the moment of the weight
 about the base over the volume (virial theorem), and that of sigma_xx is zero.
 """
@@ -32,7 +32,7 @@ from install_mpm.material_points import MaterialPoints, cauchy_stress
 from install_mpm.options import Numerics
 from workflows.verification.body import Body, make_body
 from workflows.verification.gravity import load_gravity, with_weight_of_points
-from workflows.verification.problem import Check, Outcome, Problem, Series, relative
+from workflows.verification.problem import Check, Outcome, Problem, Series, relative, shown
 from workflows.verification.rectangle import rectangle_mesh
 from workflows.verification.references import ample
 from workflows.verification.references.ample import COLLAPSE, CollapseInput
@@ -156,7 +156,9 @@ def collapse_against_ample(
         ),
         remarks=(
             f"Newton iterations {counts}; AMPLE {ample.COLLAPSE_ITERATIONS}",
-            _other_differences(data, runs["default"]),
+            "AMPLE's cells lock when the block flows, and the default discretisation does not: its"
+            " largest y and mean stress are shown beside AMPLE's, its mean stresses have to agree"
+            " with statics",
         ),
         residual_histories=tuple(history for run in runs.values() for history in run.histories),
         round_off=1e-10,
@@ -173,7 +175,7 @@ def _checks(data: CollapseInput, name: str, run: Collapsed) -> tuple[Check, ...]
     early_x, early_y = ample.COLLAPSE_EXTENT[ELASTIC_STEP]
     sigma_xx, sigma_yy = run.mean_components
     statics = -run.moment_of_weight
-    checks = [
+    checks = (
         relative(f"largest x while elastic [m], {name}", elastic_x, early_x, ELASTIC_AGREEMENT),
         relative(f"largest y while elastic [m], {name}", elastic_y, early_y, ELASTIC_AGREEMENT),
         relative(f"largest x, of the front [m], {name}", x, exact_x, AGREEMENT),
@@ -182,27 +184,15 @@ def _checks(data: CollapseInput, name: str, run: Collapsed) -> tuple[Check, ...]
               sigma_xx / statics, AGREEMENT),
         relative(f"base reaction [N], {name}", run.reaction, weight * data.width * data.height,
                  1e-7),
-    ]  # fmt: skip
-    if name == LIKE_AMPLE:
-        stress = weight * length / (COLLAPSE.density * COLLAPSE.gravity)
-        mean_stress = ample.COLLAPSE_MEAN_STRESS * stress
-        checks += [
-            relative(f"largest y [m], {name}", y, exact_y, AGREEMENT),
-            relative(f"mean stress [Pa], {name}", run.mean_stress, mean_stress, AGREEMENT),
-        ]
-    return tuple(checks)
-
-
-def _other_differences(data: CollapseInput, run: Collapsed) -> str:
-    """Return what is not compared of the discretisation unlike AMPLE's, in words."""
-    length = data.width / COLLAPSE.width
-    stress = length * data.density * data.gravity / (COLLAPSE.density * COLLAPSE.gravity)
-    y = run.extent[-1, 1] / length / ample.COLLAPSE_EXTENT[COLLAPSE.steps][1] - 1.0
-    mean = run.mean_stress / stress / ample.COLLAPSE_MEAN_STRESS - 1.0
-    return (
-        f"the default discretisation, which does not lock, ends {y:+.1%} from AMPLE in the largest"
-        f" y and {mean:+.1%} in the mean stress"
+    )  # fmt: skip
+    stress = weight * length / (COLLAPSE.density * COLLAPSE.gravity)
+    locked: tuple[tuple[str, float, float], ...] = (
+        (f"largest y [m], {name}", y, exact_y),
+        (f"mean stress [Pa], {name}", run.mean_stress, ample.COLLAPSE_MEAN_STRESS * stress),
     )
+    if name == LIKE_AMPLE:
+        return (*checks, *(relative(*row, AGREEMENT) for row in locked))
+    return (*checks, *(shown(*row) for row in locked))
 
 
 def _curve(data: CollapseInput, name: str, run: Collapsed, axis: int) -> Series:

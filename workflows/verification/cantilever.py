@@ -48,14 +48,12 @@ class Bent(NamedTuple):
 def bend(data: BeamInput) -> Bent:
     """Return the cantilever after its load has grown in equal steps.
 
-    The cells number even over the depth, so that the middle line is a line of the mesh.
+    Raises
+    ------
+    ValueError
+        If the number of cells over the depth is odd.
     """
-    columns = round(data.length / data.cell_size)
-    rows = 2 * round(0.5 * data.depth / data.cell_size)
-    mesh = rectangle_mesh(
-        np.linspace(0.0, data.length, columns + 1),
-        np.linspace(-0.5 * data.depth, 0.5 * data.depth, rows + 1),
-    )
+    mesh = _mesh(data)
     body = make_body(
         mesh,
         Ground(0.0, 1.0, HenckyElastic(data.youngs_modulus, data.poissons_ratio)),
@@ -74,6 +72,17 @@ def bend(data: BeamInput) -> Bent:
         tip.append(body.mesh.nodes[at_tip] - [data.length, 0.0])
         histories.append(residuals)
     return Bent(np.array(tip), reaction.sum(axis=0), tuple(histories))
+
+
+def _mesh(data: BeamInput) -> BackgroundMesh:
+    """Return the mesh of the cantilever; its middle line is a line of the mesh."""
+    columns, rows = (round(side / data.cell_size) for side in (data.length, data.depth))
+    if rows == 0 or rows % 2 == 1:
+        raise ValueError(f"{rows} cells lie over the depth of the cantilever; give an even number")
+    return rectangle_mesh(
+        np.linspace(0.0, data.length, columns + 1),
+        np.linspace(-0.5 * data.depth, 0.5 * data.depth, rows + 1),
+    )
 
 
 def _supports_and_load(data: BeamInput, mesh: BackgroundMesh) -> tuple[np.ndarray, np.ndarray, int]:
