@@ -64,7 +64,7 @@ def headline(
 
 def installation_figures(installed: InstalledState) -> dict[str, Any]:
     """Return depth and forces at the end of the installation (whole pile, per metre run)."""
-    history = installed.history
+    history, points = installed.history, installed.material_points
     return {
         "penetration_m": float(installed.pile.penetration),
         "tip_depth_m": float(installed.pile.tip_depth),
@@ -72,7 +72,9 @@ def installation_figures(installed: InstalledState) -> dict[str, Any]:
         f"{PilePart.BASE.name.lower()}_force_N": float(history.base_force[-1]),
         f"{PilePart.SHAFT.name.lower()}_force_N": float(history.shaft_force[-1]),
         "steps": len(history.penetration),
-        "material_points": len(installed.material_points.mass),
+        "material_points": len(points.mass),
+        "smallest_volume_ratio": float(points.volume_ratio.min()),
+        "largest_volume_ratio": float(points.volume_ratio.max()),
     }
 
 

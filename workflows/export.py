@@ -12,6 +12,7 @@ from typing import Any
 import meshio
 import numpy as np
 
+from install_mpm.ground import GroundProfile, hydrostatic_pressure
 from install_mpm.material_points import cauchy_stress, plane_area
 from install_mpm.state_file import InstalledState
 from service_fe.results import ServiceResult
@@ -22,13 +23,17 @@ VTK_NAMES = {3: "triangle", 6: "triangle6"}
 PARAVIEW_ORDER = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 
 
-def export_material_points(path: Path, installed: InstalledState) -> None:
-    """Write the material points as vertices with stress and displacement."""
+def export_material_points(path: Path, installed: InstalledState, ground: GroundProfile) -> None:
+    """Write the material points as vertices with stress and displacement.
+
+    Stresses are those in excess of the hydrostatic pressure, which stands beside them.
+    """
     points = installed.material_points
     data = {
         "displacement": _in_3d(points.displacement),
         "cauchy_stress": _six(cauchy_stress(points)),
         "mean_pressure": _mean_pressure(cauchy_stress(points)),
+        "hydrostatic_pressure": hydrostatic_pressure(ground, points.position[:, -1]),
         "volume_ratio": points.volume_ratio,
         "volume": points.volume,
         "material": points.material,

@@ -48,6 +48,9 @@ def headline_table(results: Results) -> str:
         ("shaft_force_N", "soil reaction on the shaft"),
     ):
         rows.append([text, number(shown(installation[key], "N", 4, kinematics)), "", ""])
+    low, high = installation["smallest_volume_ratio"], installation["largest_volume_ratio"]
+    volume = number(f"{low:.3f} to {high:.3f}")
+    rows.append(["volume over initial volume of the material points", volume, "", ""])
     for name, programme in figures["service"].items():
         rows.extend(_programme_rows(name, programme, kinematics))
     for name, shares in figures["continuity"].items():

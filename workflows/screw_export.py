@@ -14,6 +14,7 @@ from typing import Any
 import meshio
 import numpy as np
 
+from install_mpm.ground import GroundProfile
 from install_mpm.installation import InstallationProgress, Observer
 from install_mpm.screw_programme import total_travel
 from install_mpm.state_file import InstalledState
@@ -108,11 +109,13 @@ def read_points(directory: Path, number: int) -> PointCloud:
     )
 
 
-def export_screw_pile(directory: Path, installed: InstalledState) -> list[Path]:
+def export_screw_pile(
+    directory: Path, installed: InstalledState, ground: GroundProfile
+) -> list[Path]:
     """Write the state at the end in full into ``directory``; return the files."""
     paths = [directory / view for view in SCREW_VIEWS]
     _write(paths[0], _surface_mesh(pile_surface(installed.interface)))
-    export_material_points(paths[1], installed)
+    export_material_points(paths[1], installed, ground)
     _write(paths[2], _cells_mesh(installed))
     return paths
 

@@ -27,9 +27,12 @@ def test_block_converges_and_stays_one_dimensional(cohesion):
     assert np.nanmedian(orders) >= 1.8
 
 
-def test_cylinder_converges():
-    outcome = kratos_cylinder(n=20)
+@pytest.mark.parametrize(("cohesion", "n", "steps"), [(5e3, 50, 10), (1e3, 30, 20)])
+def test_cylinder_converges(cohesion, n, steps):
+    outcome = kratos_cylinder(c=cohesion, n=n, steps=steps)
     assert all(check.is_met for check in outcome.checks)
+    orders = [convergence_order(np.array(history)) for history in outcome.residual_histories]
+    assert np.nanmedian(orders) >= 1.8
 
 
 def test_soil_at_the_edge_has_lost_ellipticity():

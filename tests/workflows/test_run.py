@@ -84,6 +84,7 @@ def test_views_can_be_read(quick_results):
         stress = file["material_points/kirchhoff_stress"][()]
         ratio = file["material_points/volume_ratio"][()]
     np.testing.assert_array_equal(points.points[:, :2], position)
+    assert not points.point_data["hydrostatic_pressure"].any()  # there is no water table
     cauchy = stress / ratio[:, None, None]
     np.testing.assert_allclose(
         points.point_data["cauchy_stress"][:, 3], cauchy[:, 0, 1], rtol=1e-12

@@ -437,8 +437,9 @@ def test_the_last_step_is_stored_whatever_the_interval(tmp_path, states):
     assert stored_frames(tmp_path) == [0, 3]
 
 
-def test_the_state_at_the_end_is_exported_in_full(tmp_path, states):
-    surface, points, cells = (meshio.read(path) for path in export_screw_pile(tmp_path, states[-1]))
+def test_the_state_at_the_end_is_exported_in_full(tmp_path, states, case):
+    files = export_screw_pile(tmp_path, states[-1], case.ground)
+    surface, points, cells = (meshio.read(path) for path in files)
     assert len(points.points) == len(states[-1].material_points.mass)
     assert points.point_data["cauchy_stress"].shape == (len(points.points), 6)
     np.testing.assert_allclose(points.points, states[-1].material_points.position)

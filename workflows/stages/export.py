@@ -28,11 +28,11 @@ def run(case: AnyCase, directory: Path, _advance: Advance = no_progress) -> list
     """
     installed = read_checked(directory, names.INSTALLED, case)
     if isinstance(case, ScrewCase):
-        export_screw_pile(directory, installed)
+        export_screw_pile(directory, installed, case.ground)
         return []
     service = read_checked(directory, names.SERVICE, case)
     wished = read_checked(directory, names.WISHED_SERVICE, case)
-    export_material_points(directory / names.VIEW_POINTS, installed)
+    export_material_points(directory / names.VIEW_POINTS, installed, case.ground)
     export_background_mesh(directory / names.VIEW_BACKGROUND, installed)
     export_service(directory / names.VIEW_INSTALLED, service)
     export_service(directory / names.VIEW_WISHED, wished)

@@ -2,6 +2,11 @@
 
 Every factor is found on two meshes: it is approached from above and its error falls.  What is not
 in a table of the references, such as another angle for N_gamma, is refused.
+
+Without cohesion and surcharge (PB4) soil beside the edge of the footing is at the apex, or carries
+some ten pascals: there the equations are singular, and Newton's method on the fine mesh is linear
+below a residual of 1e-5 although its tangents are exact.  A cohesion of 1e-3 gamma B / 2 makes it
+quadratic under the smooth strip, not under the rough one, and raises N_gamma by 1 %.
 """
 
 from __future__ import annotations
@@ -48,8 +53,10 @@ SIZES = (0.05, 0.0125)
 TOLERANCE = 0.05
 STEEP = np.deg2rad(35.0)
 """Angle above which the tolerance of N_q and N_c is ``TOLERANCE`` and not ``CLOSE``."""
+SETTLEMENT, STEEP_SETTLEMENT = 12.0, 16.0
+"""Final settlement times E / (q N B), and above ``STEEP``, where the plateau is reached later."""
 CLOSE = 0.03
-PLATEAU = 2e-3
+PLATEAU = 1e-3
 """Largest relative change of the load over the last quarter of the settlement."""
 
 
@@ -91,6 +98,7 @@ def sand_outcome(
                 unit=unit,
                 rigidity_index=rigidity_index,
                 poissons_ratio=poissons_ratio,
+                relative_settlement=STEEP_SETTLEMENT if friction_angle > STEEP else SETTLEMENT,
             )
             for size in sizes
         ]
@@ -107,7 +115,7 @@ def _checks(footing: Footing, results: Sequence[FootingCurve]) -> list[Check]:
     return [
         relative(f"{name} on the finest mesh", fine, exact, footing.tolerance),
         at_least(f"{name} approached from above: finest mesh", fine, exact),
-        at_most(f"{name}: error of the finest over that of the coarsest mesh", falls, 0.7),
+        at_most(f"{name}: error of the finest over that of the coarsest mesh", falls, 0.6),
         at_most(
             f"{name}: change of load over the last quarter",
             max(abs(result.slope) for result in results),
@@ -146,7 +154,8 @@ def pb3(
 ) -> Outcome:
     """A rough strip of width B on weightless sand: N_q with a surcharge q, N_c with c = q.
 
-    Prandtl's and Reissner's solutions; flow is associated.  The settlement is 8 N q B / E.
+    Prandtl's and Reissner's solutions; flow is associated.  The settlement is 12 N q B / E,
+    above 35 deg 16.
     """
     if phi <= 0.0:
         raise CaseError("PB3: phi: the soil has friction; PB1 is the strip on soil without")

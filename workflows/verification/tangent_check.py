@@ -1,8 +1,9 @@
 """PE8: the consistent tangent of every soil law, in small and in finite strain.
 
 The directional derivative is compared with central differences of the stress at random states:
-elastic, on planes, edges and apex.  A state closer to a kink of the law than the step of the
-difference has no derivative and is left out; how many are is reported.
+elastic, on planes, edges and apex.  A difference across a kink of the law is no derivative: where
+it differs from the tangent the step is made smaller, until the kink lies beyond it.  An error of
+the tangent itself stays at every step.  No state is left out; how many need that is reported.
 """
 
 from __future__ import annotations
@@ -26,9 +27,11 @@ from install_mpm.conventions import Unit
 from workflows.verification.problem import Check, Outcome, Problem, at_most
 
 STEP = 3e-5
-"""Step of the central difference over the size of the strain increment."""
-KINK = 1e-2
-"""Change of the tangent within a step, over Young's modulus, that tells a kink."""
+"""First step of the central difference over the size of the strain increment."""
+REFINEMENTS = 3
+"""Times that the step is made ten times smaller."""
+LIMIT = 1e-6
+"""Error of a tangent over Young's modulus that is allowed."""
 DEGREES_12, DEGREES_35 = float(np.deg2rad(12.0)), float(np.deg2rad(35.0))
 
 
@@ -70,30 +73,58 @@ def respond_at(
 
 def tangent_errors(
     soil: HookeanSoil, increments: np.ndarray, pressure: float, *, is_finite_strain: bool
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return errors (n,) of the tangent over Young's modulus, and which states have a kink (n,)."""
+) -> tuple[np.ndarray, int]:
+    """Return errors (n,) of the tangent over Young's modulus, and how many states have a kink near.
+
+    Near is within the first step of the difference.
+    """
+    tangent = respond_at(soil, increments, pressure, is_finite_strain=is_finite_strain).tangent
+    errors, rows, near = np.full(len(increments), np.inf), np.arange(len(increments)), 0
+    for refinement in range(REFINEMENTS + 1):
+        found = _errors_at(
+            soil, increments[rows], pressure, tangent[rows], STEP * 0.1**refinement,
+            is_finite_strain=is_finite_strain,
+        )  # fmt: skip
+        errors[rows] = np.minimum(errors[rows], found / soil.youngs_modulus)
+        rows = np.flatnonzero(errors > LIMIT)
+        near = len(rows) if refinement == 0 else near
+    return errors, near
+
+
+def _errors_at(
+    soil: HookeanSoil,
+    increments: np.ndarray,
+    pressure: float,
+    tangent: np.ndarray,
+    step: float,
+    *,
+    is_finite_strain: bool,
+) -> np.ndarray:
+    """Return largest errors (n,) in Pa of ``tangent`` (n, 3, 3, 3, 3), by differences of ``step``.
+
+    The step is one over the size of the increment.
+    """
     rows, columns = [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]
-    here = respond_at(soil, increments, pressure, is_finite_strain=is_finite_strain)
-    size = STEP * np.linalg.norm(increments, axis=(1, 2))[:, None, None]
-    error, change = np.zeros(len(increments)), np.zeros(len(increments))
+    scale = np.array([1.0, 1.0, 1.0, *[np.sqrt(2.0)] * 3])
+    size = step * np.linalg.norm(increments, axis=(1, 2))[:, None, None]
+    # l = d(dF) dF^-1, so dF becomes (1 + step l) dF; in small strain d(grad u)
+    carried = increments + np.eye(3) if is_finite_strain else np.eye(3)
+    error = np.zeros(len(increments))
     for k in range(3):
         for m in range(3):
             direction = np.zeros((3, 3))
             direction[k, m] = 1.0
-            ends = []
-            for sign in (1.0, -1.0):
-                # l = d(dF) dF^-1, so dF becomes (1 + step l) dF; in small strain d(grad u)
-                carried = increments + np.eye(3) if is_finite_strain else np.eye(3)
-                moved = increments + sign * size * (direction @ carried)
-                ends.append(respond_at(soil, moved, pressure, is_finite_strain=is_finite_strain))
-            difference = (ends[0].stress - ends[1].stress) / (2.0 * size[:, :, 0])
-            scale = np.array([1.0, 1.0, 1.0, *[np.sqrt(2.0)] * 3])
-            analytic = here.tangent[:, rows, columns, k, m] * scale
+            forward, backward = (
+                respond_at(
+                    soil, increments + sign * size * (direction @ carried), pressure,
+                    is_finite_strain=is_finite_strain,
+                ).stress
+                for sign in (1.0, -1.0)
+            )  # fmt: skip
+            difference = (forward - backward) / (2.0 * size[:, :, 0])
+            analytic = tangent[:, rows, columns, k, m] * scale
             error = np.maximum(error, np.abs(difference - analytic).max(axis=1))
-            for end in ends:
-                jump = np.abs(end.tangent - here.tangent).max(axis=(1, 2, 3, 4))
-                change = np.maximum(change, jump)
-    return error / soil.youngs_modulus, change > KINK * soil.youngs_modulus
+    return error
 
 
 def turning_error(soil: HookeanSoil, increments: np.ndarray, pressure: float,
@@ -153,19 +184,21 @@ def pe8(
     rng = np.random.default_rng(seed)
     increments = random_increments(rng, n, 0.2 * su / E)
     checks: list[Check] = []
+    states = beside = 0
     for soil in soils:
         name = soil.model.replace("_", " ")
         if getattr(soil, "critical_void_ratio", None) is not None:
             name += ", fading dilation"
         for strain, is_finite in (("small", False), ("finite", True)):
-            error, kink = tangent_errors(soil, increments, p0, is_finite_strain=is_finite)
+            errors, near = tangent_errors(soil, increments, p0, is_finite_strain=is_finite)
+            states, beside = states + n, beside + near
             checks.append(
-                at_most(f"{name}, {strain} strain: error of the tangent", error[~kink].max(), 1e-6)
+                at_most(f"{name}, {strain} strain: error of the tangent", errors.max(), LIMIT)
             )
-            checks.append(at_most(f"{name}, {strain} strain: states at a kink", kink.mean(), 1e-2))
         turned = turning_error(soil, increments, p0, rng)
         checks.append(at_most(f"{name}: response to turned strains", turned, 1e-10))
-    return Outcome(tuple(checks))
+    remark = f"a kink lay within the first step of the difference at {beside} of {states} states"
+    return Outcome(tuple(checks), remarks=(remark,))
 
 
 PROBLEM = Problem("PE8", "Consistent tangents of all soil laws", pe8, is_quick=True)
