@@ -6,7 +6,7 @@ Modules that take long to load are imported inside the commands, so that others 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,29 +14,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from workflows.environment import prepare
+from workflows.script import run_as_command
 
 if TYPE_CHECKING:
     from workflows.case import AnyCase
 
 NOT_MET = 1
 """Exit status after a reference problem that is not within its tolerance."""
-
-USER_ERROR = 2
-"""Exit status after an error that the user can mend."""
-
-INTERRUPTED = 130
-"""Exit status after Ctrl-C."""
-
-USER_ERRORS = {
-    "workflows.errors.CaseError",
-    "workflows.errors.DirectoryError",
-    "install_mpm.record.StateFileError",
-    "install_mpm.installation.NotConvergedError",
-    "handoff.gmsh_triangles.MeshError",
-    "handoff.equilibration.EquilibrationError",
-    "service_fe.solve.ServiceError",
-}
-"""Errors of the stages that are one sentence for the user; by name, to import no stage for them."""
 
 app = typer.Typer(
     help="Install a pile with the material point method, hand the ground over, load it in service.",
@@ -267,39 +251,10 @@ def _resumable(directory: Path) -> Iterator[None]:
         raise
 
 
-def is_user_error(error: Exception) -> bool:
-    """Return whether ``error`` is one that a stage documents, with a message for the user."""
-    kinds = {f"{kind.__module__}.{kind.__qualname__}" for kind in type(error).__mro__}
-    return bool(kinds & USER_ERRORS)
-
-
 def main() -> None:
     """Run the command line."""
     prepare()
     run_as_command(app)
-
-
-def run_script(command: Callable[..., None]) -> None:
-    """Run one command as a script of its own, e.g. ``python -m workflows.stages.install``."""
-    script = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-    script.command()(command)
-    prepare()
-    run_as_command(script)
-
-
-def run_as_command(command: typer.Typer) -> None:
-    """Run ``command``; exit with status 2 and one sentence after a user error."""
-    try:
-        command()
-    except SystemExit as end:  # typer turns Ctrl-C into this status
-        if end.code == INTERRUPTED:
-            print("screwpile: stopped", file=sys.stderr)
-        raise
-    except Exception as error:
-        if not is_user_error(error):
-            raise
-        print(f"screwpile: {' '.join(str(error).split())}", file=sys.stderr)
-        sys.exit(USER_ERROR)
 
 
 if __name__ == "__main__":

@@ -82,6 +82,6 @@ def _remarks(results: dict[str, dict[str, dict[str, dict[str, float]]]]) -> list
 
 if __name__ == "__main__":
     from workflows.cli import compare as command
-    from workflows.cli import run_script
+    from workflows.script import run_script
 
     run_script(command)

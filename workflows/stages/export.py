@@ -43,6 +43,6 @@ def run(case: AnyCase, directory: Path, _advance: Advance = no_progress) -> list
 
 if __name__ == "__main__":
     from workflows.cli import export as command
-    from workflows.cli import run_script
+    from workflows.script import run_script
 
     run_script(command)

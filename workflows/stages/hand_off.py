@@ -55,6 +55,6 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
 
 if __name__ == "__main__":
     from workflows.cli import handoff as command
-    from workflows.cli import run_script
+    from workflows.script import run_script
 
     run_script(command)

@@ -156,6 +156,6 @@ def _read_checkpoint(directory: Path, case: AnyCase) -> InstalledState | None:
 
 if __name__ == "__main__":
     from workflows.cli import install as command
-    from workflows.cli import run_script
+    from workflows.script import run_script
 
     run_script(command)

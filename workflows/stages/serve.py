@@ -64,7 +64,7 @@ def settled_notes(result: ServiceResult) -> list[str]:
 
 
 if __name__ == "__main__":
-    from workflows.cli import run_script
     from workflows.cli import serve as command
+    from workflows.script import run_script
 
     run_script(command)

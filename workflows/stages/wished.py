@@ -51,7 +51,7 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
 
 
 if __name__ == "__main__":
-    from workflows.cli import run_script
     from workflows.cli import wished as command
+    from workflows.script import run_script
 
     run_script(command)

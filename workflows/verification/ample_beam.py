@@ -54,17 +54,7 @@ def ample_beam(
             at_most("the same, AMPLE without ghost penalty", plain_distance, TOLERANCE),
             relative("support reaction [N]", run.reaction[1], P, 1e-8),
         ),
-        series=tuple(
-            Series(
-                f"AMPLE's beam, displacement {name} of the tip",
-                "load [N]",
-                f"{name} [m]",
-                tuple(P * steps / data.steps),
-                tuple(computed[:, axis]),
-                tuple(ghost[:, axis]),
-            )
-            for axis, name in enumerate("uv")
-        ),
+        series=_curves(P * steps / data.steps, computed, ghost),
         remarks=(
             "the reference is AMPLE with ghost penalty, in which every step converged; in AMPLE"
             " without it, one step did not",
@@ -73,6 +63,15 @@ def ample_beam(
             )),
         ),
         residual_histories=run.histories,
+    )  # fmt: skip
+
+
+def _curves(loads: np.ndarray, computed: np.ndarray, ghost: np.ndarray) -> tuple[Series, ...]:
+    """Return both displacements of the tip (n, 2) in m under ``loads`` (n,) in N."""
+    return tuple(
+        Series(f"AMPLE's beam, displacement {name} of the tip", "load [N]", f"{name} [m]",
+               tuple(loads), tuple(computed[:, axis]), tuple(ghost[:, axis]))
+        for axis, name in enumerate("uv")
     )  # fmt: skip
 
 

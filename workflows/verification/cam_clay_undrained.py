@@ -112,35 +112,20 @@ def pe4(
     exact = np.array([undrained_triaxial(x, clay, **known) for x in test.shortening])
     strength = undrained_shear_strength(clay, **known)
     wet = undrained_test(replace(soil, pore_fluid_bulk_modulus=FLUID), p0, END, steps)
-    ratio = test.deviator_stress / test.mean_pressure
-    start = M * np.sqrt(ocr - 1.0)
-    eta = np.maximum(ratio, start)
-    if ocr > 2.0:  # the dry side: the ratio falls to M after yield
-        eta = np.where(np.arange(steps) > np.argmax(ratio), ratio, start)
-    path = ((M**2 + start**2) / (M**2 + eta**2)) ** clay.plastic_share
-    checks = [
+    distance = np.abs(test.mean_pressure / p0 - _stress_path(test, clay, ocr)).max()
+    difference = np.abs(wet.deviator_stress - test.deviator_stress).max() / strength
+    critical = critical_pressure(clay, **known) / 1e3
+    checks = (
         *_curve_checks(test, clay, known),
         relative("s_u, kPa", test.deviator_stress[-1] / 2e3, strength / 1e3, 1e-3),
-        relative("p at the end, kPa", test.mean_pressure[-1] / 1e3, _critical(clay, known), 1e-3),
-        at_most(
-            "effective stress path, largest distance over p0",
-            float(np.abs(test.mean_pressure / p0 - path).max()),
-            1e-3,
-        ),
-        at_most(
-            "with pore fluid: q, largest difference over s_u",
-            float(np.abs(wet.deviator_stress - test.deviator_stress).max() / strength),
-            1e-3,
-        ),
-        relative(
-            "with pore fluid: excess pore pressure at the end, kPa",
-            wet.pore_pressure[-1] / 1e3,
-            (p0 + 2.0 * strength / 3.0) / 1e3 - _critical(clay, known),
-            1e-3,
-        ),
-    ]
+        relative("p at the end, kPa", test.mean_pressure[-1] / 1e3, critical, 1e-3),
+        at_most("effective stress path, largest distance over p0", float(distance), 1e-3),
+        at_most("with pore fluid: q, largest difference over s_u", float(difference), 1e-3),
+        relative("with pore fluid: excess pore pressure at the end, kPa",
+                 wet.pore_pressure[-1] / 1e3, (p0 + 2.0 * strength / 3.0) / 1e3 - critical, 1e-3),
+    )  # fmt: skip
     return Outcome(
-        checks=tuple(checks),
+        checks=checks,
         series=(
             Series(
                 "Deviator stress",
@@ -156,9 +141,16 @@ def pe4(
     )
 
 
-def _critical(clay: CamClay, known: dict[str, float]) -> float:
-    """Return p_cs in kPa."""
-    return critical_pressure(clay, **known) / 1e3
+def _stress_path(test: UndrainedTest, clay: CamClay, ocr: float) -> np.ndarray:
+    """Return p / p0 at the stress ratios of the test, (n_steps,)."""
+    ratio = test.deviator_stress / test.mean_pressure
+    start = clay.critical_stress_ratio * np.sqrt(ocr - 1.0)
+    eta = np.maximum(ratio, start)
+    if ocr > 2.0:  # the dry side: the ratio falls to M after yield
+        eta = np.where(np.arange(len(ratio)) > np.argmax(ratio), ratio, start)
+    squared = clay.critical_stress_ratio**2
+    path: np.ndarray = ((squared + start**2) / (squared + eta**2)) ** clay.plastic_share
+    return path
 
 
 def _curve_checks(test: UndrainedTest, clay: CamClay, known: dict[str, float]) -> list[Check]:

@@ -11,7 +11,7 @@ sigma_1 - sigma_3 = sqrt(3) s_u.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
@@ -32,7 +32,7 @@ from install_mpm.options import Numerics
 from install_mpm.step import StepResult
 from workflows.verification.body import Body, ProblemNotSolvedError, advance, make_body
 from workflows.verification.polar_mesh import polar_mesh
-from workflows.verification.problem import Outcome, Problem, Series, relative
+from workflows.verification.problem import Check, Outcome, Problem, Series, relative
 from workflows.verification.rectangle import rectangle_mesh
 from workflows.verification.references.cylindrical_cavity import (
     cylinder_pressure,
@@ -220,17 +220,34 @@ def _compare(
         undrained_shear_strength=su if is_cylinder else np.sqrt(0.75) * su,
         outer_ratio=outer_ratio,
     )
-    checked = [value for value in CHECKED_EXPANSIONS if value < expansion] + [expansion]
-    checks = []
-    for value in checked:
-        at = int(np.argmin(np.abs(ratio - value)))
-        quantity = f"cavity pressure / su at a/a0 = {ratio[at]:.3g}"
-        checks.append(relative(quantity, pressure[at] / su, exact[at] / su, tolerance))
-    curve = Series(
-        "Pressure in the cavity", "a / a0 (-)", "pressure / su (-)",
-        tuple(ratio), tuple(pressure / su), tuple(exact / su),
-    )  # fmt: skip
+    values = [value for value in CHECKED_EXPANSIONS if value < expansion] + [expansion]
+    checks, curve = beside_exact(ratio, pressure / su, exact / su, "su", values, tolerance)
     return Outcome(tuple(checks), (curve,), residual_histories=histories, round_off=ROUND_OFF)
+
+
+def beside_exact(
+    ratio: np.ndarray,
+    pressure: np.ndarray,
+    exact: np.ndarray,
+    unit: str,
+    expansions: Iterable[float],
+    tolerance: float,
+) -> tuple[list[Check], Series]:
+    """Return the checks of the pressure at ``expansions``, and its curve.
+
+    ``pressure`` and ``exact`` (n,) at the expansions ``ratio`` (n,) are over a pressure or strength
+    that is called ``unit``.
+    """
+    checks = []
+    for value in expansions:
+        at = int(np.argmin(np.abs(ratio - value)))
+        quantity = f"cavity pressure / {unit} at a/a0 = {ratio[at]:.3g}"
+        checks.append(relative(quantity, pressure[at], exact[at], tolerance))
+    curve = Series(
+        "Pressure in the cavity", "a / a0 (-)", f"pressure / {unit} (-)",
+        tuple(ratio), tuple(pressure), tuple(exact),
+    )  # fmt: skip
+    return checks, curve
 
 
 def cylindrical_ring(

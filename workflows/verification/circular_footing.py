@@ -9,7 +9,6 @@ size of the elements at the singular edge.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import Annotated
 
@@ -24,6 +23,11 @@ from service_fe.load_step import Step
 from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem, roller_supports
 from service_fe.rigid_pile import held
+from workflows.verification.footing_curve import (
+    FootingCurve,
+    curve_on_finest_mesh,
+    error_over_size,
+)
 from workflows.verification.problem import (
     Check,
     Outcome,
@@ -47,29 +51,6 @@ RELATIVE_SETTLEMENT = 40.0
 """Final settlement times E / (2 s_u R); the plateau begins near 20."""
 
 
-@dataclass(frozen=True)
-class CircularFootingResult:
-    """Load-settlement curve of the footing."""
-
-    settlement: np.ndarray
-    """Settlement over diameter (step,)."""
-    bearing_factor: np.ndarray
-    """Mean pressure over shear strength (step,)."""
-    residuals: tuple[tuple[float, ...], ...]
-    """Relative residuals of each step."""
-
-    @property
-    def plateau(self) -> float:
-        """Bearing capacity factor at the end of the curve."""
-        return float(self.bearing_factor[-1])
-
-    @property
-    def slope(self) -> float:
-        """Relative change of the load over the last quarter of the curve."""
-        late = self.bearing_factor[self.settlement >= 0.75 * self.settlement[-1]]
-        return float(late[-1] / late[0] - 1.0)
-
-
 def circular_footing(
     size_at_edge: float,
     *,
@@ -79,7 +60,7 @@ def circular_footing(
     rigidity_index: float = 1000.0,
     poissons_ratio: float = 0.49,
     steps: int = 24,
-) -> CircularFootingResult:
+) -> FootingCurve:
     """Return the curve of a rigid footing that is pushed down in equal steps.
 
     Parameters
@@ -119,7 +100,7 @@ def circular_footing(
         accepted.append(problem.solve(state, held(), support_motion=motion, guess=guess))
         state = accepted[-1].state
     loads = np.array([-step.support_reaction[under_footing, 1].sum() for step in accepted])
-    return CircularFootingResult(
+    return FootingCurve(
         settlement=settlement * np.arange(1, steps + 1) / steps,
         bearing_factor=loads / (np.pi * radius**2 * strength),
         residuals=tuple(step.residuals for step in accepted),
@@ -160,7 +141,7 @@ def pb2_fe(
 
 
 def outcome(
-    footing: Callable[..., CircularFootingResult],
+    footing: Callable[..., FootingCurve],
     undrained_shear_strength: float,
     round_off: float = ROUND_OFF,
 ) -> Outcome:
@@ -184,7 +165,7 @@ def outcome(
     )
 
 
-def _checks(name: str, results: list[CircularFootingResult], exact: float) -> list[Check]:
+def _checks(name: str, results: list[FootingCurve], exact: float) -> list[Check]:
     coarse, fine = results[0], results[-1]
     falls = abs((fine.plateau - exact) / (coarse.plateau - exact))
     return [
@@ -195,26 +176,16 @@ def _checks(name: str, results: list[CircularFootingResult], exact: float) -> li
     ]
 
 
-def _series(name: str, results: list[CircularFootingResult], exact: float) -> list[Series]:
-    fine = results[-1]
+def _series(name: str, results: list[FootingCurve], exact: float) -> list[Series]:
     return [
-        Series(
-            f"{name} footing, finest mesh",
-            "settlement / 2R",
-            "mean pressure / su",
-            tuple(fine.settlement),
-            tuple(fine.bearing_factor),
-            tuple(np.full(len(fine.settlement), exact)),
+        curve_on_finest_mesh(
+            f"{name} footing, finest mesh", results[-1], exact, width="2R",
+            factor="mean pressure / su",
         ),
-        Series(
-            f"{name} footing, error of the bearing factor",
-            "size at the edge of the footing / 2R",
-            "relative error",
-            SIZES,
-            tuple(abs(result.plateau / exact - 1.0) for result in results),
-            is_logarithmic=True,
+        error_over_size(
+            f"{name} footing, error of the bearing factor", results, exact, SIZES, width="2R"
         ),
-    ]
+    ]  # fmt: skip
 
 
 PROBLEM = Problem(

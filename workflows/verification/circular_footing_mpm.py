@@ -22,10 +22,10 @@ from workflows.verification.body import advance, make_body
 from workflows.verification.circular_footing import (
     RELATIVE_SETTLEMENT,
     SIZE_FAR,
-    CircularFootingResult,
     footing_supports,
     outcome,
 )
+from workflows.verification.footing_curve import FootingCurve
 from workflows.verification.problem import Outcome, Problem
 from workflows.verification.strip_footing_fe import footing_mesh
 
@@ -43,7 +43,7 @@ def circular_footing(
     rigidity_index: float = 2e4,
     poissons_ratio: float = 0.49,
     steps: int = 48,
-) -> CircularFootingResult:
+) -> FootingCurve:
     """Return the curve of a rigid footing; parameters are those of ``circular_footing``.
 
     Raises
@@ -70,7 +70,7 @@ def circular_footing(
         body, result = advance(body, prescribed, name=f"circular footing, step {number + 1}")
         loads.append(-result.equilibrium.reaction[under_footing, 1].sum())
         histories.append(tuple(result.equilibrium.newton.residuals))
-    return CircularFootingResult(
+    return FootingCurve(
         settlement=settlement * np.arange(1, steps + 1) / steps,
         bearing_factor=np.array(loads) / (np.pi * radius**2 * strength),
         residuals=tuple(histories),

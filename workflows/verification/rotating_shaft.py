@@ -71,17 +71,9 @@ def shaft_in_clay(
     turned: Annotated[float, Unit("rad")] = float(np.deg2rad(20.0)),
 ) -> Outcome:
     """Return the torque on a shaft in clay with adhesion factors 0.5 and 1."""
-    checks: list[Check] = []
-    residuals: list[tuple[float, ...]] = []
-    for alpha in (0.5, 1.0):
-        prism = _prism(a, L)
-        body = _body(shaft_mesh(prism), prism, inward, _clay(su), _adhesive(su, alpha), su)
-        turning = turn(body, prism, inward, _steps(turned))
-        exact = shaft_torque(radius=a, length=L, shear_strength=alpha * su)
-        text = f"torque after {np.degrees(turned):g} degrees in N m, adhesion factor {alpha:g}"
-        checks.append(relative(text, turning.torque[-1], exact, 0.02))
-        residuals += turning.residuals
-    return Outcome(tuple(checks), residual_histories=tuple(residuals))
+    prism = _prism(a, L)
+    full = shaft_torque(radius=a, length=L, shear_strength=su)
+    return _torques_in_clay(prism, shaft_mesh(prism), inward, su, turned, full)
 
 
 def disc_in_clay(
@@ -92,21 +84,28 @@ def disc_in_clay(
     turned: Annotated[float, Unit("rad")] = float(np.deg2rad(10.0)),
 ) -> Outcome:
     """Return the torque on a disc in clay with adhesion factors 0.5 and 1."""
+    prism = Prism(R, 2.5 * R, DISC_SIDES, (-R - 0.5 * t, R + 0.5 * t))
+
+    def normals(position: np.ndarray) -> np.ndarray:
+        is_rim = np.abs(position[:, 2]) < 0.5 * t - ON_PLANE
+        upright = np.column_stack([np.zeros((len(position), 2)), -np.sign(position[:, 2])])
+        return np.where(is_rim[:, None], inward(position), upright)
+
+    full = disc_torque(radius=R, thickness=t, shear_strength=su)
+    return _torques_in_clay(prism, disc_mesh(prism, t), normals, su, turned, full)
+
+
+def _torques_in_clay(
+    prism: Prism, mesh: BackgroundMesh, normals: Normals, su: float, turned: float, full: float
+) -> Outcome:
+    """Return the torques with adhesion factors 0.5 and 1; ``full`` (N m) is that with factor 1."""
     checks: list[Check] = []
     residuals: list[tuple[float, ...]] = []
     for alpha in (0.5, 1.0):
-        prism = Prism(R, 2.5 * R, DISC_SIDES, (-R - 0.5 * t, R + 0.5 * t))
-
-        def normals(position: np.ndarray) -> np.ndarray:
-            is_rim = np.abs(position[:, 2]) < 0.5 * t - ON_PLANE
-            upright = np.column_stack([np.zeros((len(position), 2)), -np.sign(position[:, 2])])
-            return np.where(is_rim[:, None], inward(position), upright)
-
-        body = _body(disc_mesh(prism, t), prism, normals, _clay(su), _adhesive(su, alpha), su)
+        body = _body(mesh, prism, normals, _clay(su), _adhesive(su, alpha), su)
         turning = turn(body, prism, normals, _steps(turned))
-        exact = disc_torque(radius=R, thickness=t, shear_strength=alpha * su)
         text = f"torque after {np.degrees(turned):g} degrees in N m, adhesion factor {alpha:g}"
-        checks.append(relative(text, turning.torque[-1], exact, 0.02))
+        checks.append(relative(text, turning.torque[-1], alpha * full, 0.02))
         residuals += turning.residuals
     return Outcome(tuple(checks), residual_histories=tuple(residuals))
 

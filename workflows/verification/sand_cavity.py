@@ -14,8 +14,14 @@ import numpy as np
 
 from install_mpm.constitutive.parameters import MohrCoulomb
 from install_mpm.conventions import Kinematics, Unit
-from workflows.verification.cavity import Cavity, cylinder_ring, expand_cavity, sector
-from workflows.verification.problem import Check, Outcome, Problem, Series, relative
+from workflows.verification.cavity import (
+    Cavity,
+    beside_exact,
+    cylinder_ring,
+    expand_cavity,
+    sector,
+)
+from workflows.verification.problem import Outcome, Problem, relative
 from workflows.verification.references.mohr_coulomb_cavity import (
     MohrCoulombSoil,
     cavity_pressure,
@@ -54,20 +60,13 @@ def _compare(
     )
     is_sphere, p0 = cavity.volume_power == 3, soil.initial_pressure
     exact = np.array([cavity_pressure(value, soil, is_sphere=is_sphere) for value in ratio])
-    checks: list[Check] = []
-    for value in dict.fromkeys((*(v for v in CHECKED_EXPANSIONS if v < expansion), expansion)):
-        at = int(np.argmin(np.abs(ratio - value)))
-        quantity = f"cavity pressure / p0 at a/a0 = {ratio[at]:.3g}"
-        checks.append(relative(quantity, pressure[at] / p0, exact[at] / p0, TOLERANCE))
+    values = [value for value in CHECKED_EXPANSIONS if value < expansion] + [expansion]
+    checks, curve = beside_exact(ratio, pressure / p0, exact / p0, "p0", values, TOLERANCE)
     limit = cavity_pressure(np.inf, soil, is_sphere=is_sphere)
     remark = "the solution itself is farther than 2 % from its limit at the end of this expansion"
     if exact[-1] >= NEAR_THE_LIMIT * limit:
         checks.append(relative("limit pressure / p0", pressure[-1] / p0, limit / p0, TOLERANCE))
         remark = "the limit pressure is compared with that of the largest expansion"
-    curve = Series(
-        "Pressure in the cavity", "a / a0 (-)", "pressure / p0 (-)",
-        tuple(ratio), tuple(pressure / p0), tuple(exact / p0),
-    )  # fmt: skip
     return Outcome(tuple(checks), (curve,), (remark,), histories, ROUND_OFF)
 
 

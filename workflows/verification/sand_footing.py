@@ -13,7 +13,6 @@ elements at the edge of the footing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
@@ -30,6 +29,7 @@ from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held
 from workflows.verification.circular_footing import footing_supports
+from workflows.verification.footing_curve import FootingCurve
 from workflows.verification.strip_footing_fe import footing_mesh
 
 SIZE_FAR, GROWTH = 0.5, 0.1
@@ -47,29 +47,6 @@ class Strength(Enum):
     WEIGHT = "N_gamma"
 
 
-@dataclass(frozen=True)
-class SandFootingResult:
-    """Load-settlement curve of the footing."""
-
-    settlement: np.ndarray
-    """Settlement over B (step,)."""
-    bearing_factor: np.ndarray
-    """Mean pressure over q, c or gamma B / 2 (step,)."""
-    residuals: tuple[tuple[float, ...], ...]
-    """Relative residuals of each step."""
-
-    @property
-    def plateau(self) -> float:
-        """Bearing capacity factor at the end of the curve."""
-        return float(self.bearing_factor[-1])
-
-    @property
-    def slope(self) -> float:
-        """Relative change of the load over the last quarter of the curve."""
-        late = self.bearing_factor[self.settlement >= 0.75 * self.settlement[-1]]
-        return float(late[-1] / late[0] - 1.0)
-
-
 def sand_footing(
     size_at_edge: float,
     strength: Strength,
@@ -84,7 +61,7 @@ def sand_footing(
     rigidity_index: float = 1e4,
     poissons_ratio: float = 0.3,
     relative_settlement: float = 8.0,
-) -> SandFootingResult:
+) -> FootingCurve:
     """Return the curve of a rigid footing that is pushed down in steps that grow.
 
     Parameters
@@ -113,14 +90,9 @@ def sand_footing(
     """
     mesh = sand_mesh(size_at_edge, friction_angle, width, strength)
     is_fixed, under_footing = footing_supports(mesh, 0.5 * width, is_rough=is_rough)
-    own_cohesion = unit if strength == Strength.COHESION else cohesion
-    soil = MohrCoulomb(
-        rigidity_index * unit, poissons_ratio, own_cohesion, friction_angle, friction_angle
-    )
-    unit_weight = 2.0 * unit / width if strength == Strength.WEIGHT else 0.0
     problem = ServiceProblem(
         mesh,
-        Ground(unit_weight, 1.0, soil),
+        _sand(strength, friction_angle, width, unit, cohesion, rigidity_index, poissons_ratio),
         CoulombInterface(1.0, 1.0),
         numerics=ServiceNumerics(max_iterations=40, tolerance=1e-8),
         is_fixed=is_fixed,
@@ -133,11 +105,28 @@ def sand_footing(
     motion = [-step.increment.displacement[under_footing, 1].mean() for step in accepted]
     area = 0.25 * np.pi * width**2 if kinematics == Kinematics.AXISYMMETRIC else 0.5 * width
     loads = np.array([-step.support_reaction[under_footing, 1].sum() for step in accepted])
-    return SandFootingResult(
+    return FootingCurve(
         settlement=np.cumsum(motion) / width,
         bearing_factor=(surcharge + loads / area) / unit,
         residuals=tuple(step.residuals for step in accepted),
     )
+
+
+def _sand(
+    strength: Strength,
+    friction_angle: float,
+    width: float,
+    unit: float,
+    cohesion: float,
+    rigidity_index: float,
+    poissons_ratio: float,
+) -> Ground:
+    """Return the sand, whose ``strength`` is of the size ``unit``; see ``sand_footing``."""
+    own_cohesion = unit if strength == Strength.COHESION else cohesion
+    soil = MohrCoulomb(
+        rigidity_index * unit, poissons_ratio, own_cohesion, friction_angle, friction_angle
+    )
+    return Ground(2.0 * unit / width if strength == Strength.WEIGHT else 0.0, 1.0, soil)
 
 
 def sand_mesh(

@@ -19,6 +19,11 @@ import numpy as np
 
 from install_mpm.conventions import Kinematics, Unit
 from workflows.errors import CaseError
+from workflows.verification.footing_curve import (
+    FootingCurve,
+    curve_on_finest_mesh,
+    error_over_size,
+)
 from workflows.verification.problem import (
     Check,
     Outcome,
@@ -35,7 +40,7 @@ from workflows.verification.references.bearing_capacity import (
     strip_factors,
     tabulated,
 )
-from workflows.verification.sand_footing import SandFootingResult, Strength, sand_footing
+from workflows.verification.sand_footing import Strength, sand_footing
 
 Length = Annotated[float, Unit("m")]
 Stress = Annotated[float, Unit("Pa")]
@@ -103,7 +108,7 @@ def sand_outcome(
     return Outcome(tuple(checks), tuple(series), residual_histories=tuple(histories))
 
 
-def _checks(footing: Footing, results: Sequence[SandFootingResult]) -> list[Check]:
+def _checks(footing: Footing, results: Sequence[FootingCurve]) -> list[Check]:
     name, exact = footing.name, footing.exact
     coarse, fine = results[0].plateau, results[-1].plateau
     falls = abs((fine - exact) / (coarse - exact))
@@ -120,21 +125,15 @@ def _checks(footing: Footing, results: Sequence[SandFootingResult]) -> list[Chec
 
 
 def _series(
-    footing: Footing, results: Sequence[SandFootingResult], sizes: Sequence[float]
+    footing: Footing, results: Sequence[FootingCurve], sizes: Sequence[float]
 ) -> list[Series]:
-    fine = results[-1]
+    name, exact = footing.name, footing.exact
     return [
-        Series(
-            f"{footing.name}, finest mesh", "settlement / B", footing.strength.value,
-            tuple(fine.settlement), tuple(fine.bearing_factor),
-            tuple(np.full(len(fine.settlement), footing.exact)),
+        curve_on_finest_mesh(
+            f"{name}, finest mesh", results[-1], exact, width="B", factor=footing.strength.value
         ),
-        Series(
-            f"{footing.name}, error", "size at the edge of the footing / B", "relative error",
-            tuple(sizes), tuple(abs(one.plateau / footing.exact - 1.0) for one in results),
-            is_logarithmic=True,
-        ),
-    ]  # fmt: skip
+        error_over_size(f"{name}, error", results, exact, sizes, width="B"),
+    ]
 
 
 def _known(identifier: str, table: dict[int, float], friction_angle: float) -> float:

@@ -24,42 +24,29 @@ from service_fe.load_step import Step
 from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem, roller_supports
 from service_fe.rigid_pile import held
-from workflows.verification.problem import Outcome, Problem, Series, at_least, at_most, relative
+from workflows.verification.footing_curve import (
+    FootingCurve,
+    curve_on_finest_mesh,
+    error_over_size,
+)
+from workflows.verification.problem import Outcome, Problem, at_least, at_most, relative
 from workflows.verification.revolution import quadratic
 
 EXACT = 2.0 + np.pi
 
 
 @dataclass(frozen=True)
-class StripFootingResult:
-    """Load-settlement curve of the footing."""
+class StripFootingResult(FootingCurve):
+    """Load-settlement curve of the strip, and what it has taken."""
 
-    settlement: np.ndarray
-    """Settlement over footing width (step,)."""
-    bearing_factor: np.ndarray
-    """Mean pressure over shear strength (step,)."""
     iterations: np.ndarray
     """Newton iterations (step,)."""
-    residuals: tuple[tuple[float, ...], ...]
-    """Relative residuals of each step."""
     n_dofs: int
-
-    @property
-    def plateau(self) -> float:
-        """Bearing capacity factor at the end of the curve."""
-        return float(self.bearing_factor[-1])
 
     @property
     def error(self) -> float:
         """Relative error of the plateau against Prandtl."""
         return self.plateau / EXACT - 1.0
-
-    @property
-    def slope(self) -> float:
-        """Relative change of the load over the last quarter of the curve."""
-        is_late = self.settlement >= 0.75 * self.settlement[-1]
-        late = self.bearing_factor[is_late]
-        return float(late[-1] / late[0] - 1.0)
 
 
 def strip_footing(
@@ -177,22 +164,10 @@ def outcome(results: Sequence[StripFootingResult], round_off: float = ROUND_OFF)
             at_most("change of load over the last quarter", abs(fine.slope), 1e-3),
         ),
         series=(
-            Series(
-                "finest mesh",
-                "settlement / B",
-                "mean pressure / su",
-                tuple(fine.settlement),
-                tuple(fine.bearing_factor),
-                tuple(np.full(len(fine.settlement), EXACT)),
+            curve_on_finest_mesh(
+                "finest mesh", fine, EXACT, width="B", factor="mean pressure / su"
             ),
-            Series(
-                "error of N_c",
-                "size at the edge of the footing / B",
-                "relative error",
-                SIZES,
-                tuple(abs(result.error) for result in results),
-                is_logarithmic=True,
-            ),
+            error_over_size("error of N_c", results, EXACT, SIZES, width="B"),
         ),
         residual_histories=tuple(history for result in results for history in result.residuals),
         round_off=round_off,

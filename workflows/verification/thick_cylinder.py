@@ -19,7 +19,7 @@ from install_mpm.conventions import Kinematics, Unit
 from install_mpm.ground import Ground
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held
-from workflows.verification.problem import Check, Outcome, Problem, Series, at_most, relative
+from workflows.verification.problem import Outcome, Problem, Series, at_most, relative
 from workflows.verification.references.thick_cylinder import collapse_pressure, internal_pressure
 from workflows.verification.revolution import quadratic
 
@@ -105,47 +105,30 @@ def pd10(
         widen(n_cells, youngs_modulus=E_over_su * su, poissons_ratio=nu, **radii)
         for n_cells in CELLS
     ]
-    fine = curves[-1]
+    fine, collapse = curves[-1], collapse_pressure(**radii)
     plastic_radius = np.sqrt(fine.outer_displacement * b * E_over_su / (2.0 * (1.0 - nu**2)))
     is_partial = (plastic_radius > a) & (plastic_radius < 0.999 * b)
     exact = internal_pressure(plastic_radius[is_partial], **radii)
-    collapse = collapse_pressure(**radii)
     errors = tuple(abs(curve.pressure[-1] / collapse - 1.0) for curve in curves)
     largest = float(np.abs(fine.pressure[is_partial] / exact - 1.0).max())
     pressure_at = PchipInterpolator(plastic_radius[is_partial], fine.pressure[is_partial])
     first_yield = fine.pressure[0] * (a / plastic_radius[0]) ** 2  # the first step is elastic
     computed = {a: first_yield} | {c: pressure_at(c) for c in a + (b - a) * np.array([0.25, 0.5])}
-    checks: list[Check] = [
-        relative(
-            f"pressure for c = {c:g} m (Pa)",
-            float(value),
-            float(internal_pressure(c, **radii)),
-            TOLERANCE,
-        )
-        for c, value in computed.items()
-    ]
-    checks += [
+    checks = (
+        *(relative(f"pressure for c = {c:g} m (Pa)", float(value),
+                   float(internal_pressure(c, **radii)), TOLERANCE)
+          for c, value in computed.items()),
         at_most("largest relative error of p(c) from first yield to collapse", largest, TOLERANCE),
         relative("collapse pressure (Pa)", float(fine.pressure[-1]), collapse, TOLERANCE),
-        at_most(
-            "error of the collapse pressure, finest over coarsest", errors[-1] / errors[0], 0.3
-        ),
-    ]
-    return Outcome(
-        tuple(checks),
-        (
-            Series(
-                "internal pressure",
-                "plastic radius (m)",
-                "pressure (Pa)",
-                tuple(plastic_radius[is_partial]),
-                tuple(fine.pressure[is_partial]),
-                tuple(exact),
-            ),
-            _convergence(errors),
-        ),
-        residual_histories=tuple(history for curve in curves for history in curve.residuals),
-    )
+        at_most("error of the collapse pressure, finest over coarsest", errors[-1] / errors[0],
+                0.3),
+    )  # fmt: skip
+    curve = Series(
+        "internal pressure", "plastic radius (m)", "pressure (Pa)",
+        tuple(plastic_radius[is_partial]), tuple(fine.pressure[is_partial]), tuple(exact),
+    )  # fmt: skip
+    histories = tuple(history for curve in curves for history in curve.residuals)
+    return Outcome(checks, (curve, _convergence(errors)), residual_histories=histories)
 
 
 def _convergence(errors: tuple[float, ...]) -> Series:
