@@ -60,7 +60,7 @@ MALFORMED = {
     ),
     "step larger than half a cell": ('step = "30 mm"', 'step = "0.2 m"', "half the smallest cell"),
     "missing section": ("[box]", "[service.box]", "box is missing"),
-    "unknown start": ('start = "equilibrated"', 'start = "then"', "must be one of"),
+    "unknown start": ('start = "equilibrated"', 'start = "then"', "which is not before it"),
     "broken TOML": ("[box]", "[box", "not valid TOML"),
 }
 
