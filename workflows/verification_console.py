@@ -36,16 +36,26 @@ def console() -> Console:
 def choose(identifiers: Sequence[str], is_quick: bool) -> list[Problem]:
     """Return the problems that are named, all if none is; of these the quick ones if asked for.
 
+    Of all problems those are left out whose reference is a package that is not installed.
+
     Raises
     ------
     CaseError
-        If a name is unknown, or none is left.
+        If a name is unknown, needs a package that is not installed, or none is left.
     """
-    named = dict.fromkeys(registry.problem(name).identifier for name in identifiers)
-    chosen = [registry.problem(name) for name in named or registry.problems()]
+    named = [registry.problem(name) for name in dict.fromkeys(identifiers)]
+    for problem in named:
+        if not problem.is_available:
+            raise CaseError(
+                f"{problem.identifier} needs the package {problem.needs}; install the extra that "
+                f"brings it, see [project.optional-dependencies] of pyproject.toml"
+            )
+    available = [problem for problem in registry.problems().values() if problem.is_available]
+    chosen = list({problem.identifier: problem for problem in named or available}.values())
     chosen = [problem for problem in chosen if problem.is_quick or not is_quick]
     if not chosen:
-        raise CaseError(f"none of {', '.join(named)} is a quick problem; leave out --quick")
+        names = ", ".join(problem.identifier for problem in named)
+        raise CaseError(f"none of {names} is a quick problem; leave out --quick")
     return chosen
 
 
@@ -177,6 +187,7 @@ def print_list() -> None:
     out = console()
     for problem in registry.problems().values():
         mark = "  (quick)" if problem.is_quick else ""
+        mark += f"  (needs {problem.needs})" if problem.needs else ""
         out.print(Text.assemble((problem.identifier, "bold"), f"  {problem.title}{mark}"))
         inputs = (f"{one.name} = {one.format(one.default)}"
                   for one in parameters_of(problem).values())  # fmt: skip

@@ -3,6 +3,7 @@
 import json
 import re
 import sys
+from dataclasses import replace
 from typing import Annotated, Literal
 
 import numpy as np
@@ -78,7 +79,9 @@ def verify(monkeypatch, *arguments):
 
 @pytest.mark.dolfinx
 @pytest.mark.gmsh
-@pytest.mark.parametrize("name", [name for name, one in PROBLEMS.items() if one.is_quick])
+@pytest.mark.parametrize(
+    "name", [name for name, one in PROBLEMS.items() if one.is_quick and one.is_available]
+)
 def test_quick_problem_is_within_its_tolerance(name):
     result = run_problem(PROBLEMS[name])
     failed = [check for check in result.checks if not check.is_met]
@@ -110,6 +113,15 @@ def test_list_names_all_problems_with_units_and_defaults(monkeypatch, capsys):
         assert re.search(rf"^{name}  {re.escape(problem.title)}", text, flags=re.MULTILINE)
     assert "ks = 1e+07 Pa/m" in text
     assert "phi = 24 deg" in text
+
+
+def test_problem_without_its_package_is_left_out_or_refused(monkeypatch, capsys):
+    missing = replace(AREA, identifier="TA2", needs="no_such_package")
+    monkeypatch.setattr(registry, "problems", lambda: {"TA1": AREA, "TA2": missing})
+    assert verify(monkeypatch) == 0
+    assert "1 of 1 reference problem" in capsys.readouterr().out
+    assert verify(monkeypatch, "TA2") == 2
+    assert "TA2 needs the package no_such_package" in capsys.readouterr().err
 
 
 def test_problems_by_name_with_report_and_numbers(monkeypatch, capsys, tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from typing import Any
 
 from install_mpm.newton import ROUND_OFF
@@ -88,6 +89,13 @@ class Problem:
     run: Callable[..., Outcome]
     is_quick: bool
     """Part of ``screwpile verify --quick``: a few seconds."""
+    needs: str = ""
+    """Package of an extra, whose code is the reference; without it the problem is left out."""
+
+    @property
+    def is_available(self) -> bool:
+        """Return whether the package that the problem needs is installed."""
+        return not self.needs or find_spec(self.needs) is not None
 
 
 def relative(quantity: str, computed: float, reference: float, tolerance: float) -> Check:

@@ -16,6 +16,7 @@ MODULES: tuple[str, ...] = (
     "rigid_rotation",
     "moving_mesh",
     "moving_solid",
+    "opensees_triaxial",
     "ellipse",
     "annulus_interface",
     "annulus",
