@@ -17,7 +17,6 @@ import numpy as np
 from install_mpm.constitutive.frictional import PLASTIC_SHEAR
 from install_mpm.constitutive.parameters import MohrCoulomb
 from install_mpm.conventions import GRAVITY, Kinematics, Unit
-from install_mpm.newton import ROUND_OFF
 from workflows.verification.body import Body
 from workflows.verification.problem import (
     Check,
@@ -27,7 +26,6 @@ from workflows.verification.problem import (
     at_most,
     relative,
 )
-from workflows.verification.runner import newton_statement
 from workflows.verification.settling_block import Block, Settled, settle
 
 Length = Annotated[float, Unit("m")]
@@ -41,7 +39,7 @@ SIDEWAYS = 1e-8
 
 STRESS_ERROR = 0.3
 """Bound of the mean error of the vertical stress over rho g H, times n: a stress that is constant
-over a row of cells has 1 / 4.
+over a row of cells has 1 / 4 (few points sample it with less).
 """
 
 
@@ -73,7 +71,6 @@ def _checks(block: Block, settled: Settled) -> tuple[Check, ...]:
     return (
         at_most(f"Newton iterations of a step, largest of {block.steps} steps",
                 max(len(history) - 1 for history in histories), MOST_ITERATIONS),
-        newton_statement(histories, ROUND_OFF).check,
         relative("reaction of the base, N", settled.carried, points.mass.sum() * GRAVITY, 1e-8),
         at_most("mean error of the vertical stress over rho g H", float(error),
                 STRESS_ERROR / block.n),
@@ -161,7 +158,8 @@ def kratos_cube(
 ) -> Outcome:
     """A cube of Mohr-Coulomb soil settles under its own weight, in space; see ``kratos_block``.
 
-    ``n`` cubes per side, cut into six tetrahedra each, on a mesh that follows the soil.
+    ``n`` cubes per side, cut into six tetrahedra each, on a mesh that follows the soil.  They have
+    to be fine enough to see the elastic soil under the surface.
     """
     soil = MohrCoulomb(E, nu, c, phi, psi)
     return _outcome(Block(soil, H, rho_g, n, steps, Kinematics.THREE_D), (c, c_low))
