@@ -35,15 +35,15 @@ With any of them missing the steps of a fine mesh do not converge: n = 50 in axi
 kPa, 10 steps, stalls in step 3 if the mesh stays or the triangles share out the weight themselves,
 and in step 1 if squares are crossed.  Quadratic cells on a mesh that stays fare better, for all
 that they disturb (they integrate the kink of the horizontal stress at the depth of first yield with
-an error).  In axisymmetry with n = 50 they take six iterations with c = 5 kPa and ten with c = 1 kPa;
-in space with c = 1 kPa five, six and seven with n = 8, 12 and 16.
+an error).  In axisymmetry with n = 50 they take six iterations with c = 5 kPa and ten with c = 1
+kPa; in space with c = 1 kPa five, six and seven with n = 8, 12 and 16.
 
 In space one thing is left that no mesh can mend.  On the edge both horizontal stresses stay equal
 whatever the horizontal distortion, so a horizontal motion without change of area, the same at all
-heights, meets no resistance.  Only the soil under the surface that cohesion keeps elastic does
-resist, and the cells have to see it: with c = 1 kPa it is 0.7 m thick, and n = 8 is enough.  On
-coarser meshes, or without cohesion, every row yields, the tangent is singular, round-off decides
-on a sideways motion (about 1e-5 m), and that step takes up to 15 iterations.
+heights, meets no resistance.  Only the soil under the surface that cohesion keeps elastic resists,
+and the cells have to see it: with c = 1 kPa it is 0.7 m thick, and n = 8 is enough.  On coarser
+meshes every row yields in the end: in that step round-off decides on a sideways motion (1e-5 m to
+1e-4 m), which has taken up to 15 iterations.
 
 Nothing is held sideways but the boundary; the problems check that nothing moves sideways.
 """
