@@ -31,7 +31,7 @@ class BackgroundMesh(NamedTuple):
 def make_background_mesh(nodes: np.ndarray, cell_nodes: np.ndarray) -> BackgroundMesh:
     """Return the mesh of simplices at its reference position, neighbours found.
 
-    Triangles have 3 or 6 nodes, tetrahedra 10.
+    Triangles have 3 or 6 nodes, tetrahedra 4 or 10.
     """
     dim = nodes.shape[1]
     mesh = straightened(

@@ -23,10 +23,11 @@ class CellType(IntEnum):
     TRI6 = 1
     QUAD4 = 2
     TET10 = 3
+    TET4 = 4
 
 
 _TRI3, _TRI6, _QUAD4 = int(CellType.TRI3), int(CellType.TRI6), int(CellType.QUAD4)
-_TET10 = int(CellType.TET10)
+_TET10, _TET4 = int(CellType.TET10), int(CellType.TET4)
 _GAUSS = 1.0 / np.sqrt(3.0)
 
 TRIANGLE_EDGES = ((0, 1), (1, 2), (2, 0))
@@ -55,6 +56,8 @@ def reference_cell(cell_type: CellType) -> ReferenceCell:
         return ReferenceCell(_QUAD4, 4, 4, 2, corner, np.ones(4))
     if cell_type == CellType.TRI3:
         return ReferenceCell(_TRI3, 3, 3, 2, np.full((1, 2), 1 / 3), np.full(1, 0.5))
+    if cell_type == CellType.TET4:
+        return ReferenceCell(_TET4, 4, 4, 3, np.full((1, 3), 1 / 4), np.full(1, 1 / 6))
     if cell_type == CellType.TET10:
         far, near = (5.0 - np.sqrt(5.0)) / 20.0, (5.0 + 3.0 * np.sqrt(5.0)) / 20.0
         near_vertex = np.full((4, 3), far)
@@ -75,6 +78,10 @@ def shape_functions(cell_type, xi, values):
         return
     if cell_type == _TET10:
         _quadratic_tetrahedron(xi, values)
+        return
+    if cell_type == _TET4:
+        for v in range(4):
+            values[v] = _barycentric(xi, v)
         return
     first, second = xi[0], xi[1]
     zeroth = 1.0 - first - second
@@ -141,6 +148,11 @@ def reference_gradients(cell_type, xi, gradients):
         return
     if cell_type == _TET10:
         _quadratic_tetrahedron_gradients(xi, gradients)
+        return
+    if cell_type == _TET4:
+        for v in range(4):
+            for i in range(3):
+                gradients[v, i] = _barycentric_gradient(v, i)
         return
     if cell_type == _TRI3:
         gradients[:, :] = 0.0

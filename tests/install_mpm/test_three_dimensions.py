@@ -173,6 +173,21 @@ def test_quadratic_fields_and_their_gradients_are_reproduced(rng):
         )
 
 
+def test_linear_fields_and_their_gradients_are_reproduced_by_four_nodes(rng):
+    cell = reference_cell(CellType.TET4)
+    nodes = np.vstack([np.zeros(3), np.eye(3)])
+    slope = rng.normal(size=3)
+    values, gradients = np.empty(4), np.empty((4, 3))
+    for xi in rng.dirichlet(np.ones(4), size=20)[:, 1:]:
+        shape_functions(cell.cell_type, xi, values)
+        reference_gradients(cell.cell_type, xi, gradients)
+        assert values @ (nodes @ slope + 2.0) == pytest.approx(xi @ slope + 2.0)
+        np.testing.assert_allclose((nodes @ slope + 2.0) @ gradients, slope, atol=1e-14)
+    np.testing.assert_allclose(cell.integration_coordinates, [[0.25, 0.25, 0.25]])
+    assert cell.reference_volumes.sum() == pytest.approx(1 / 6)
+    assert len(make_background_mesh(nodes, np.array([[0, 1, 2, 3]])).nodes) == 4
+
+
 @pytest.mark.parametrize("per_direction", [1, 2])
 def test_seeds_fill_the_sub_regions(per_direction):
     cell = reference_cell(CellType.TET10)

@@ -31,6 +31,7 @@ CHANGED = {
     "FIG7-HENCKY": {"q": 1.2},
     "FIG8": {"E": 20e3, "h": 1.0, "penetration": 0.2},
     "KRATOS-BLOCK": {"phi": np.radians(25.0), "nu": 0.25},
+    "KRATOS-BLOCK-3D": {"phi": np.radians(25.0), "nu": 0.25, "n": 8},
     "KRATOS-BLOCK-ROUND": {"phi": np.radians(25.0), "nu": 0.25},
     "OPENSEES-DP": {"phi": np.radians(35.0), "psi": np.radians(5.0), "nu": 0.2},
     "PA1": {"rho": 60.0},

@@ -5,7 +5,15 @@ import pytest
 
 from install_mpm.background_mesh import facets_opposite_vertices
 from install_mpm.screw_surface import place_points
-from workflows.verification.solid_meshes import box_mesh, extruded, quadratic_mesh, ring, ring_mesh
+from workflows.verification.solid_meshes import (
+    box_mesh,
+    extruded,
+    grid,
+    linear_mesh,
+    quadratic_mesh,
+    ring,
+    ring_mesh,
+)
 from workflows.verification.solid_surfaces import inward, surface_elements
 
 LINES = np.array([0.0, 0.3, 1.0])
@@ -34,6 +42,15 @@ def test_a_box_is_filled_without_gaps():
     assert (volumes(mesh) > 0.0).all()
     assert volumes(mesh).sum() == pytest.approx(2.0)
     assert boundary_area(mesh) == pytest.approx(10.0)
+
+
+def test_a_linear_mesh_has_the_vertices_alone():
+    solid = extruded(grid(LINES, LINES), LINES)
+    mesh = linear_mesh(solid)
+    assert mesh.cell_nodes.shape == (6 * 8, 4)
+    assert len(mesh.nodes) == 27
+    assert (volumes(mesh) > 0.0).all()
+    assert volumes(mesh).sum() == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("inner", [0.0, 0.5])

@@ -29,7 +29,7 @@ from install_mpm.seeding import seed_points
 from install_mpm.step import StepResult, step
 
 AT_REST = PileMotion(np.zeros(2))
-CELL_TYPES = {3: CellType.TRI3, 6: CellType.TRI6, 10: CellType.TET10}
+CELL_TYPES = {3: CellType.TRI3, 6: CellType.TRI6, 4: CellType.TET4, 10: CellType.TET10}
 """By number of nodes."""
 
 MoveMesh = Callable[[BackgroundMesh], BackgroundMesh]

@@ -110,14 +110,24 @@ def quadratic_mesh(solid: Solid, is_kept: np.ndarray | None = None) -> Backgroun
     tetrahedra = solid.tetrahedra if is_kept is None else solid.tetrahedra[is_kept]
     used, tetrahedra = np.unique(tetrahedra, return_inverse=True)
     tetrahedra, vertices = tetrahedra.reshape(-1, 4), solid.vertices[used]
-    edges = vertices[tetrahedra[:, 1:]] - vertices[tetrahedra[:, :1]]
-    is_mirrored = np.linalg.det(edges) < 0.0
-    tetrahedra[is_mirrored] = tetrahedra[is_mirrored][:, [0, 2, 1, 3]]
+    tetrahedra = _right_handed(vertices, tetrahedra)
     ends = np.sort(tetrahedra[:, TET_EDGES], axis=2).reshape(-1, 2)
     unique, edge = np.unique(ends, axis=0, return_inverse=True)
     nodes = np.vstack([vertices, vertices[unique].mean(axis=1)])
     middle = len(vertices) + edge.reshape(-1, 6)
     return make_background_mesh(nodes, np.hstack([tetrahedra, middle]))
+
+
+def _right_handed(vertices: np.ndarray, tetrahedra: np.ndarray) -> np.ndarray:
+    """Return the tetrahedra (n, 4) with two nodes exchanged where the volume is negative."""
+    edges = vertices[tetrahedra[:, 1:]] - vertices[tetrahedra[:, :1]]
+    is_mirrored = np.linalg.det(edges) < 0.0
+    return np.where(is_mirrored[:, None], tetrahedra[:, [0, 2, 1, 3]], tetrahedra)
+
+
+def linear_mesh(solid: Solid) -> BackgroundMesh:
+    """Return the mesh of all tetrahedra, of four nodes."""
+    return make_background_mesh(solid.vertices, _right_handed(solid.vertices, solid.tetrahedra))
 
 
 def box_mesh(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> BackgroundMesh:
