@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh
-from install_mpm.constitutive.dispatch import Materials, Model
+from install_mpm.constitutive.dispatch import Materials, Model, state_columns
 from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.constitutive.pressure_elasticity import bulk_modulus
 from install_mpm.conventions import Kinematics
@@ -82,7 +82,10 @@ def youngs_modulus(materials: Materials) -> np.ndarray:
 
 
 def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisation) -> CellOptions:
-    """Return the stiffnesses of this step only: volumetric term and softly held cells."""
+    """Return the stiffnesses of this step only: volumetric term, and softly held cells.
+
+    These are cells that soil does not fill, and those in which it has opened.
+    """
     n_cells, n_per_cell = len(fill.cell_volume), np.diff(points.cell_start)
     first = np.minimum(points.cell_start[:-1], len(points.material) - 1)
     modulus = youngs_modulus(model.materials)[points.material[first]]
@@ -94,12 +97,43 @@ def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisatio
         has_mean_dilatation=model.has_mean_dilatation and model.is_finite_strain,
         is_axisymmetric=model.kinematics == Kinematics.AXISYMMETRIC,
         volumetric_term=model.numerics.volumetric_term * modulus,
-        soft_stiffness=model.numerics.soft_stiffness
-        * modulus
-        * missing
+        soft_stiffness=modulus
+        * (
+            model.numerics.soft_stiffness * missing
+            + model.numerics.open_stiffness * open_share(points, model.materials)
+        )
         * fill.cell_volume
         / np.maximum(n_per_cell, 1),
     )
+
+
+def open_share(points: IntegrationPoints, materials: Materials) -> np.ndarray:
+    """Return the share of the integration points of each cell that have opened, (n_cells,)."""
+    is_open = np.zeros(len(points.material), dtype=bool)
+    for row, column in enumerate(state_columns(materials, "opening")):
+        if column >= 0:
+            is_open |= (points.material == row) & (points.state_variables[:, column] > 0.0)
+    n_per_cell = np.diff(points.cell_start)
+    cell = np.repeat(np.arange(len(n_per_cell)), n_per_cell)
+    share: np.ndarray = np.bincount(cell, is_open, len(n_per_cell)) / np.maximum(n_per_cell, 1)
+    return share
+
+
+def largest_corrections(mesh: BackgroundMesh, share: float | None) -> np.ndarray | float:
+    """Return by how much an iteration may move each dof, (n_dofs,) in m; infinity without a share.
+
+    It is a ``share`` of the size of the smallest cell at the node.  The size of a cell, about the
+    length of its sides, is the root of the determinant of the edges from a vertex.
+    """
+    if share is None:
+        return np.inf
+    n_nodes, dim = mesh.nodes.shape
+    vertices = mesh.nodes[mesh.cell_nodes[:, : dim + 1]]
+    size = np.abs(np.linalg.det(vertices[:, 1:] - vertices[:, :1])) ** (1.0 / dim)
+    smallest = np.full(n_nodes, np.inf)
+    for nodes in mesh.cell_nodes.T:
+        np.minimum.at(smallest, nodes, size)
+    return np.repeat(share * smallest, dim)
 
 
 def find_equilibrium(
@@ -127,6 +161,7 @@ def find_equilibrium(
         first,
         model.numerics.tolerance,
         model.numerics.max_iterations,
+        largest_corrections(mesh, model.numerics.largest_correction),
     )
     reaction = np.where(prescribed.is_prescribed, system.out_of_balance, 0.0)
     return StepEquilibrium(

@@ -5,6 +5,10 @@ Knows a residual, a tangent and a linear solver, and nothing of soil.
 Order of evaluation: residual and tangent at the start; then solve, step, and evaluate again,
 halving the step while the trial is inadmissible or the residual grows.  The last *accepted* iterate
 is returned; nothing is kept on failure.
+
+A dof that hardly anything holds can ask for a correction far beyond all others, which would have to
+be halved until nothing is left of them.  It can be given a limit of its own: the others then keep
+their full correction, and near the solution no limit is reached.
 """
 
 from __future__ import annotations
@@ -58,11 +62,13 @@ def solve_newton(
     start: np.ndarray,
     tolerance: float,
     max_iterations: int,
+    largest_correction: np.ndarray | float = np.inf,
 ) -> NewtonResult:
     """Return the solution of ``evaluate(x).residual = 0`` from ``start`` (n_dofs,).
 
     Convergence means |residual| <= tolerance * reference; at least one correction is always made,
-    unless the start is exact to round-off.
+    unless the start is exact to round-off.  No dof is corrected by more than
+    ``largest_correction``, one number or (n_dofs,), in an iteration.
     """
     x = start
     state = evaluate(x)
@@ -77,6 +83,7 @@ def solve_newton(
                 correction = solve(state.tangent, -state.residual)
         except SingularMatrixError:
             return NewtonResult(x, False, np.array(residuals))
+        correction = np.clip(correction, -largest_correction, largest_correction)
         x, state = _backtrack(evaluate, x, correction, state)
         if not state.is_admissible:
             break

@@ -74,6 +74,11 @@ class Numerics:
     """Stiffness h_v of the volumetric term, of a step only, over Young's modulus."""
     fill_threshold: Share = 0.3
     soft_stiffness: Annotated[float, Ge(0)] = 1e-2
+    """Stiffness, of a step only, of partly filled cells over Young's modulus and missing share."""
+    open_stiffness: Annotated[float, Ge(0)] = 0.0
+    """Stiffness, of a step only, of soil that has opened at its apex over Young's modulus."""
+    largest_correction: Annotated[float | None, Gt(0)] = None
+    """Of a displacement component in an iteration, over the size of the cells; None: no limit."""
     most_points_per_cell: Annotated[int, Ge(3)] = 48
     """Material points are merged in cells that hold more."""
     checkpoint_every: Annotated[int, Ge(1)] = 10
@@ -87,6 +92,10 @@ class ScrewNumerics(Numerics):
 
     tolerance: Annotated[float, Gt(0), Le(1e-3)] = 1e-4
     """Sand that leaves the pile converges slowly from there on, in a few cells at its apex."""
+    open_stiffness: Annotated[float, Ge(0)] = 1e-3
+    """Sand that has opened behind a trailing edge is held together by nothing else."""
+    largest_correction: Annotated[float | None, Gt(0)] = 0.1
+    """Loose nodes of opened sand would go metres and take all other corrections away."""
 
 
 @dataclass(frozen=True)
