@@ -109,6 +109,8 @@ class ScrewMeshOptions:
     size_far: Length
     edge_reach: Length
     """Distance from the edges within which cells have ``size_at_edges``."""
+    growth: Annotated[float, Gt(0), Le(1)] = 0.45
+    """Increase of the cell size per distance from edges, plates and shaft."""
     points_per_direction: Annotated[int, Ge(1), Le(3)] = 1
     """Points per sub-region and direction: a tetrahedron has 4 sub-regions, so 2 gives 32."""
     random_seed: Annotated[int, Ge(0)] = 0
