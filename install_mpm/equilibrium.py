@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from install_mpm.background_mesh import BackgroundMesh
+from install_mpm.background_mesh import BackgroundMesh, size_at_nodes
 from install_mpm.constitutive.dispatch import Materials, Model, state_columns
 from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.constitutive.pressure_elasticity import bulk_modulus
@@ -26,7 +26,7 @@ from install_mpm.kernels.equilibrium import evaluate_cells
 from install_mpm.kernels.interface_force import evaluate_interface
 from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
 from install_mpm.linear_solvers import Solve
-from install_mpm.newton import Evaluation, NewtonResult, solve_newton
+from install_mpm.newton import NO_LIMIT, Evaluation, NewtonResult, solve_newton
 from install_mpm.pile import PileMotion, rigid_displacement
 from install_mpm.timing import measured
 
@@ -119,23 +119,6 @@ def open_share(points: IntegrationPoints, materials: Materials) -> np.ndarray:
     return share
 
 
-def largest_corrections(mesh: BackgroundMesh, share: float | None) -> np.ndarray | float:
-    """Return by how much an iteration may move each dof, (n_dofs,) in m; infinity without a share.
-
-    It is a ``share`` of the size of the smallest cell at the node.  The size of a cell, about the
-    length of its sides, is the root of the determinant of the edges from a vertex.
-    """
-    if share is None:
-        return np.inf
-    n_nodes, dim = mesh.nodes.shape
-    vertices = mesh.nodes[mesh.cell_nodes[:, : dim + 1]]
-    size = np.abs(np.linalg.det(vertices[:, 1:] - vertices[:, :1])) ** (1.0 / dim)
-    smallest = np.full(n_nodes, np.inf)
-    for nodes in mesh.cell_nodes.T:
-        np.minimum.at(smallest, nodes, size)
-    return np.repeat(share * smallest, dim)
-
-
 def find_equilibrium(
     mesh: BackgroundMesh,
     points: IntegrationPoints,
@@ -155,14 +138,12 @@ def find_equilibrium(
     first = np.where(system.is_free | prescribed.is_prescribed, first, 0.0).ravel()
     if prescribed.displacement.any() and not start.any():
         first = _elastic_solution(system, first, model.solve)
-    newton = solve_newton(
-        system.evaluate,
-        model.solve,
-        first,
-        model.numerics.tolerance,
-        model.numerics.max_iterations,
-        largest_corrections(mesh, model.numerics.largest_correction),
-    )
+    newton = _newton_from(system, first, gives_up=model.numerics.second_start)
+    if not newton.is_converged and model.numerics.second_start:
+        at_rest = np.where(prescribed.is_prescribed, prescribed.displacement, 0.0).ravel()
+        again, wasted = _newton_from(system, at_rest), newton.residuals
+        both = np.concatenate([wasted[np.isfinite(wasted)], again.residuals])
+        newton = again._replace(residuals=both)
     reaction = np.where(prescribed.is_prescribed, system.out_of_balance, 0.0)
     return StepEquilibrium(
         newton,
@@ -174,6 +155,18 @@ def find_equilibrium(
         system.external,
         system.contact(),
     )
+
+
+def _newton_from(system: StepSystem, first: np.ndarray, *, gives_up: bool = False) -> NewtonResult:
+    """Return what Newton's method makes of the trial displacement ``first`` (n_dofs,) in m."""
+    numerics, largest = system.model.numerics, NO_LIMIT
+    if numerics.largest_correction is not None:
+        largest = numerics.largest_correction * size_at_nodes(system.mesh)
+        largest = np.repeat(largest, system.mesh.nodes.shape[1])
+    return solve_newton(
+        system.evaluate, system.model.solve, first, numerics.tolerance, numerics.max_iterations,
+        largest, gives_up=gives_up,
+    )  # fmt: skip
 
 
 def _elastic_solution(system: StepSystem, first: np.ndarray, solve: Solve) -> np.ndarray:

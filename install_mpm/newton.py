@@ -30,6 +30,9 @@ GROWTH_ALLOWED = 1.0
 ROUND_OFF = 2e-12
 """Relative residuals below this are round-off and say nothing about the order of convergence."""
 
+NO_LIMIT = np.array(np.inf)
+"""Of corrections."""
+
 EXACT = float(np.finfo(float).eps)
 """What a residual of zero counts as where logarithms are taken."""
 
@@ -62,13 +65,16 @@ def solve_newton(
     start: np.ndarray,
     tolerance: float,
     max_iterations: int,
-    largest_correction: np.ndarray | float = np.inf,
+    largest_correction: np.ndarray = NO_LIMIT,
+    *,
+    gives_up: bool = False,
 ) -> NewtonResult:
     """Return the solution of ``evaluate(x).residual = 0`` from ``start`` (n_dofs,).
 
     Convergence means |residual| <= tolerance * reference; at least one correction is always made,
     unless the start is exact to round-off.  No dof is corrected by more than
-    ``largest_correction``, one number or (n_dofs,), in an iteration.
+    ``largest_correction``, one number or (n_dofs,), in an iteration.  An iteration in which all
+    trials increase the residual goes on from the best of them, or ends if it ``gives_up``.
     """
     x = start
     state = evaluate(x)
@@ -88,6 +94,8 @@ def solve_newton(
         if not state.is_admissible:
             break
         residuals.append(_relative(state))
+        if gives_up and residuals[-1] > GROWTH_ALLOWED * residuals[-2]:
+            break
     is_converged = state.is_admissible and residuals[-1] <= tolerance
     return NewtonResult(x, is_converged, np.array(residuals))
 

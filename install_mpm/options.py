@@ -79,6 +79,8 @@ class Numerics:
     """Stiffness, of a step only, of soil that has opened at its apex over Young's modulus."""
     largest_correction: Annotated[float | None, Gt(0)] = None
     """Of a displacement component in an iteration, over the size of the cells; None: no limit."""
+    second_start: bool = False
+    """Begin a step again from rest if the first trial, the last displacement, leads nowhere."""
     most_points_per_cell: Annotated[int, Ge(3)] = 48
     """Material points are merged in cells that hold more."""
     checkpoint_every: Annotated[int, Ge(1)] = 10
@@ -96,6 +98,8 @@ class ScrewNumerics(Numerics):
     """Sand that has opened behind a trailing edge is held together by nothing else."""
     largest_correction: Annotated[float | None, Gt(0)] = 0.1
     """Loose nodes of opened sand would go metres and take all other corrections away."""
+    second_start: bool = True
+    """Soil behind an edge never moves twice in the same way."""
 
 
 @dataclass(frozen=True)

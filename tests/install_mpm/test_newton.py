@@ -167,6 +167,15 @@ def test_residual_without_root_fails():
     assert np.isfinite(result.solution).all()
 
 
+def test_iteration_that_only_gets_worse_can_end_it():
+    """x^2 + 1 with a tangent of the wrong sign: every trial is worse than the start."""
+    problem = Problem(lambda x: x**2 + 1.0, lambda x: -2.0 * x)
+    impatient = solve_newton(problem, solve_dense, np.array([0.7]), TOLERANCE, 20, gives_up=True)
+    assert not impatient.is_converged
+    assert len(impatient.residuals) == 2
+    assert len(solve(problem, 0.7).residuals) == 21
+
+
 def test_last_iteration_may_converge():
     needed = len(solve(square_root(), 2.0).residuals) - 1
     assert solve(square_root(), 2.0, max_iterations=needed).is_converged

@@ -12,7 +12,7 @@ from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive.frictional import OPENING
 from install_mpm.constitutive.parameters import CoulombInterface, MohrCoulomb
 from install_mpm.conventions import Kinematics
-from install_mpm.equilibrium import cell_options, largest_corrections, open_share
+from install_mpm.equilibrium import cell_options, open_share
 from install_mpm.ground import Ground
 from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
@@ -154,17 +154,6 @@ def test_soil_without_openings_is_never_open(make_column, clay_ground):
     column = make_column(clay_ground)
     given = give_state(column.points(), column.mesh, column.model, column.gradient)
     assert not open_share(given.quadrature, column.model.materials).any()
-
-
-def test_corrections_are_limited_by_the_smallest_cell_at_a_node(make_column, clay_ground):
-    mesh = make_column(clay_ground).mesh
-    limits = largest_corrections(mesh, 0.1).reshape(-1, 2)
-    for node, limit in enumerate(limits):
-        cells = mesh.cell_nodes[(mesh.cell_nodes == node).any(axis=1), :3]
-        edges = mesh.nodes[cells[:, 1:]] - mesh.nodes[cells[:, :1]]
-        size = np.sqrt(np.abs(np.cross(edges[:, 0], edges[:, 1])).min())
-        np.testing.assert_allclose(limit, 0.1 * size, rtol=1e-12)
-    assert largest_corrections(mesh, None) == np.inf
 
 
 def test_openings_of_a_cell_are_shared_or_closed(make_column, rng):
