@@ -30,9 +30,6 @@ from install_mpm.screw_surface import boundary_parts
 LARGEST_ON_PLATE = 2.5
 """Largest cell size at the plates over their thickness; coarser meshes fail or have flat cells."""
 
-OPTIMISERS = ("", "Netgen")
-"""The second removes the flat cells that the first leaves at the edges of the plates."""
-
 
 def make_screw_mesh(
     pile: ScrewPile,
@@ -60,7 +57,7 @@ def make_screw_mesh(
     inside = [depth for depth in boundaries if depth < box.depth]
     levels = [-box.depth, *(-depth for depth in sorted(inside, reverse=True)), 0.0]
     try:
-        level_mesh = mesh_around_pile(pile, box, sizes, levels, -rotation, OPTIMISERS)
+        level_mesh = mesh_around_pile(pile, box, sizes, levels, -rotation)
     except Exception as error:  # gmsh raises bare exceptions
         raise MeshError(
             f"gmsh could not mesh the ground around the screw pile ({error}); use a smaller"

@@ -45,6 +45,21 @@ def make_background_mesh(nodes: np.ndarray, cell_nodes: np.ndarray) -> Backgroun
     return mesh._replace(reference_nodes=mesh.nodes.copy())
 
 
+def size_at_nodes(mesh: BackgroundMesh) -> np.ndarray:
+    """Return the size of the smallest cell at each node, (n_nodes,) in m.
+
+    The size of a cell, about the length of its sides, is the root of the determinant of the edges
+    from a vertex.
+    """
+    dim = mesh.nodes.shape[1]
+    vertices = mesh.nodes[mesh.cell_nodes[:, : dim + 1]]
+    size = np.abs(np.linalg.det(vertices[:, 1:] - vertices[:, :1])) ** (1.0 / dim)
+    smallest = np.full(len(mesh.nodes), np.inf)
+    for nodes in mesh.cell_nodes.T:
+        np.minimum.at(smallest, nodes, size)
+    return smallest
+
+
 FACETS_OPPOSITE = {3: [[1, 2], [2, 0], [0, 1]], 4: [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]]}
 """Vertices of the facet opposite each vertex, by number of vertices; outward in a tetrahedron."""
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from install_mpm.background_mesh import BackgroundMesh
-from install_mpm.constitutive.dispatch import Materials, Model
+from install_mpm.background_mesh import BackgroundMesh, size_at_nodes
+from install_mpm.constitutive.dispatch import Materials, Model, state_columns
 from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.constitutive.pressure_elasticity import bulk_modulus
 from install_mpm.conventions import Kinematics
@@ -26,7 +26,7 @@ from install_mpm.kernels.equilibrium import evaluate_cells
 from install_mpm.kernels.interface_force import evaluate_interface
 from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
 from install_mpm.linear_solvers import Solve
-from install_mpm.newton import Evaluation, NewtonResult, solve_newton
+from install_mpm.newton import NO_LIMIT, Evaluation, NewtonResult, solve_newton
 from install_mpm.pile import PileMotion, rigid_displacement
 from install_mpm.timing import measured
 
@@ -82,7 +82,10 @@ def youngs_modulus(materials: Materials) -> np.ndarray:
 
 
 def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisation) -> CellOptions:
-    """Return the stiffnesses of this step only: volumetric term and softly held cells."""
+    """Return the stiffnesses of this step only: volumetric term, and softly held cells.
+
+    These are cells that soil does not fill, and those in which it has opened.
+    """
     n_cells, n_per_cell = len(fill.cell_volume), np.diff(points.cell_start)
     first = np.minimum(points.cell_start[:-1], len(points.material) - 1)
     modulus = youngs_modulus(model.materials)[points.material[first]]
@@ -94,12 +97,26 @@ def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisatio
         has_mean_dilatation=model.has_mean_dilatation and model.is_finite_strain,
         is_axisymmetric=model.kinematics == Kinematics.AXISYMMETRIC,
         volumetric_term=model.numerics.volumetric_term * modulus,
-        soft_stiffness=model.numerics.soft_stiffness
-        * modulus
-        * missing
+        soft_stiffness=modulus
+        * (
+            model.numerics.soft_stiffness * missing
+            + model.numerics.open_stiffness * open_share(points, model.materials)
+        )
         * fill.cell_volume
         / np.maximum(n_per_cell, 1),
     )
+
+
+def open_share(points: IntegrationPoints, materials: Materials) -> np.ndarray:
+    """Return the share of the integration points of each cell that have opened, (n_cells,)."""
+    is_open = np.zeros(len(points.material), dtype=bool)
+    for row, column in enumerate(state_columns(materials, "opening")):
+        if column >= 0:
+            is_open |= (points.material == row) & (points.state_variables[:, column] > 0.0)
+    n_per_cell = np.diff(points.cell_start)
+    cell = np.repeat(np.arange(len(n_per_cell)), n_per_cell)
+    share: np.ndarray = np.bincount(cell, is_open, len(n_per_cell)) / np.maximum(n_per_cell, 1)
+    return share
 
 
 def find_equilibrium(
@@ -121,13 +138,12 @@ def find_equilibrium(
     first = np.where(system.is_free | prescribed.is_prescribed, first, 0.0).ravel()
     if prescribed.displacement.any() and not start.any():
         first = _elastic_solution(system, first, model.solve)
-    newton = solve_newton(
-        system.evaluate,
-        model.solve,
-        first,
-        model.numerics.tolerance,
-        model.numerics.max_iterations,
-    )
+    newton = _newton_from(system, first, gives_up=model.numerics.second_start)
+    if not newton.is_converged and model.numerics.second_start:
+        at_rest = np.where(prescribed.is_prescribed, prescribed.displacement, 0.0).ravel()
+        again, wasted = _newton_from(system, at_rest), newton.residuals
+        both = np.concatenate([wasted[np.isfinite(wasted)], again.residuals])
+        newton = again._replace(residuals=both)
     reaction = np.where(prescribed.is_prescribed, system.out_of_balance, 0.0)
     return StepEquilibrium(
         newton,
@@ -139,6 +155,18 @@ def find_equilibrium(
         system.external,
         system.contact(),
     )
+
+
+def _newton_from(system: StepSystem, first: np.ndarray, *, gives_up: bool = False) -> NewtonResult:
+    """Return what Newton's method makes of the trial displacement ``first`` (n_dofs,) in m."""
+    numerics, largest = system.model.numerics, NO_LIMIT
+    if numerics.largest_correction is not None:
+        largest = numerics.largest_correction * size_at_nodes(system.mesh)
+        largest = np.repeat(largest, system.mesh.nodes.shape[1])
+    return solve_newton(
+        system.evaluate, system.model.solve, first, numerics.tolerance, numerics.max_iterations,
+        largest, gives_up=gives_up,
+    )  # fmt: skip
 
 
 def _elastic_solution(system: StepSystem, first: np.ndarray, solve: Solve) -> np.ndarray:

@@ -136,48 +136,62 @@ def merge(
     merged = MaterialPoints(*(np.array(field) for field in points))
     is_left = np.ones(len(points.mass), dtype=bool)
     region = sub_region_of(points, cell)
-    for c in crowded:
-        own = fill.point_order[fill.cell_start[c] : fill.cell_start[c + 1]]
-        for _ in range(len(own) - most_per_cell):
-            pair = _nearest_pair(merged, own[is_left[own]], region)
-            if pair is None:
-                break
-            _merge_pair(merged, *pair)
-            is_left[pair[1]] = False
+    held = [fill.point_order[fill.cell_start[c] : fill.cell_start[c + 1]] for c in crowded]
+    while held:
+        pairs = [_nearest_pairs(merged, own, region, len(own) - most_per_cell) for own in held]
+        kept, gone = np.concatenate(pairs).T
+        _merge_pairs(merged, kept, gone)
+        is_left[gone] = False
+        held = [own[is_left[own]] for own, found in zip(held, pairs, strict=True) if len(found)]
+        held = [own for own in held if len(own) > most_per_cell]
     return MaterialPoints(*(field[is_left] for field in merged))
 
 
-def _nearest_pair(
-    points: MaterialPoints, own: np.ndarray, region: np.ndarray
-) -> tuple[int, int] | None:
-    """Return the two nearest points of ``own`` of the same soil and sub-region.
+def _nearest_pairs(
+    points: MaterialPoints, own: np.ndarray, region: np.ndarray, most: int
+) -> np.ndarray:
+    """Return at most ``most`` pairs (n, 2) of ``own``, the nearest first, no point in two of them.
 
-    If there are any.
+    Both points of a pair are of the same soil and sub-region.
     """
-    place = points.position[own]
-    distance = np.linalg.norm(place[:, None] - place, axis=2)
-    kind = np.column_stack([points.material[own], region[own]])
-    differs = (kind[:, None] != kind).any(axis=2)
-    distance[differs | np.tri(len(own), dtype=bool)] = np.inf
-    first, second = np.unravel_index(np.argmin(distance), distance.shape)
-    if not np.isfinite(distance[first, second]):
-        return None
-    return int(own[first]), int(own[second])
+    first, second = np.triu_indices(len(own), 1)
+    first, second = own[first], own[second]
+    is_same = (points.material[first] == points.material[second]) & (
+        region[first] == region[second]
+    )
+    first, second = first[is_same], second[is_same]
+    difference = points.position[first] - points.position[second]
+    order = np.argsort((difference**2).sum(axis=1), kind="stable")
+    taken: set[int] = set()
+    pairs: list[tuple[int, int]] = []
+    for pair in zip(first[order].tolist(), second[order].tolist(), strict=True):
+        if len(pairs) == most:
+            break
+        if taken.isdisjoint(pair):
+            taken.update(pair)
+            pairs.append(pair)
+    return np.array(pairs, dtype=np.int64).reshape(-1, 2)
 
 
-def _merge_pair(points: MaterialPoints, kept: int, gone: int) -> None:
-    """Put the point ``gone`` into ``kept``, in place."""
-    pair = [kept, gone]
+def _merge_pairs(points: MaterialPoints, kept: np.ndarray, gone: np.ndarray) -> None:
+    """Put the points ``gone`` (n,) into ``kept`` (n,), in place; no point is in two pairs."""
+    pair = np.stack([kept, gone])
     volume = points.volume[pair]
-    share = volume / volume.sum()
+    share = volume / volume.sum(axis=0)
     initial_volume = volume / points.volume_ratio[pair]
-    cauchy = points.kirchhoff_stress[pair] / points.volume_ratio[pair, None, None]
-    ratio = volume.sum() / initial_volume.sum()
-    for name in ("position", "displacement", "elastic_log_strain", "state_variables"):
+    cauchy = points.kirchhoff_stress[pair] / points.volume_ratio[pair][:, :, None, None]
+    ratio = volume.sum(axis=0) / initial_volume.sum(axis=0)
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        return np.asarray(np.einsum("pn,pn...->n...", share, values))
+
+    for name in (
+        "position", "displacement", "elastic_log_strain", "state_variables",
+        "reference_coordinates",
+    ):  # fmt: skip
         field = getattr(points, name)
-        field[kept] = np.tensordot(share, field[pair], axes=1)
-    points.reference_coordinates[kept] = share @ points.reference_coordinates[pair]
-    points.kirchhoff_stress[kept] = ratio * np.tensordot(share, cauchy, axes=1)
+        field[kept] = mean(field[pair])
+    points.kirchhoff_stress[kept] = ratio[:, None, None] * mean(cauchy)
     points.volume_ratio[kept] = ratio
-    points.volume[kept] = volume.sum()
-    points.mass[kept] = points.mass[pair].sum()
+    points.volume[kept] = volume.sum(axis=0)
+    points.mass[kept] = points.mass[pair].sum(axis=0)

@@ -1,14 +1,15 @@
 """Linear solvers as values: each function returns ``solve(values, right_hand_side) -> solution``.
 
-The sparsity pattern is given once, so analysis is done once.  The tangent is not symmetric in
-general (mean dilatation, non-associated flow, friction), so only LU methods are offered here.
+The sparsity pattern is given once, so that analysis need not be repeated.  The tangent is not
+symmetric in general (mean dilatation, non-associated flow, friction), so only LU methods are
+offered here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy import sparse
@@ -23,21 +24,86 @@ class SingularMatrixError(ArithmeticError):
     """The tangent could not be factorised; the step is made shorter."""
 
 
+class CoupledSystem(NamedTuple):
+    """The part of a matrix whose dofs have to be solved for together."""
+
+    dofs: np.ndarray
+    """Its rows and columns in the whole matrix, (n_coupled,)."""
+    entries: np.ndarray
+    """Where its values are among those of the whole, (n_coupled_entries,)."""
+    indptr: np.ndarray
+    """Its row starts, (n_coupled + 1,) int32."""
+    indices: np.ndarray
+    """Its columns, (n_coupled_entries,) int32."""
+
+
+def coupled_system(pattern: SparsityPattern, is_coupled: np.ndarray) -> CoupledSystem:
+    """Return the part of the pattern that belongs to the dofs ``is_coupled`` (n_dofs,)."""
+    number = np.cumsum(is_coupled) - 1
+    row = np.repeat(np.arange(len(is_coupled)), np.diff(pattern.indptr))
+    entries = np.flatnonzero(is_coupled[row] & is_coupled[pattern.indices])
+    dofs = np.flatnonzero(is_coupled)
+    indptr = np.searchsorted(number[row[entries]], np.arange(len(dofs) + 1)).astype(np.int32)
+    return CoupledSystem(dofs, entries, indptr, number[pattern.indices[entries]].astype(np.int32))
+
+
 def mumps(pattern: SparsityPattern) -> Solve:
-    """Return a MUMPS LU solver (through PETSc) that analyses the pattern once.
+    """Return a MUMPS LU solver (through PETSc) of the dofs that are coupled to others.
+
+    Supports and cells without soil leave identity rows, a fifth of all around a screw pile, which
+    are not factorised.  The others are analysed again only when they change, so a solution depends
+    on its own values, not on those of earlier calls.
 
     Raises
     ------
     SingularMatrixError
         From the returned function, if a factorisation fails.
     """
+    row = np.repeat(np.arange(len(pattern.indptr) - 1), np.diff(pattern.indptr))
+    is_diagonal = row == pattern.indices
+    last: tuple[np.ndarray, CoupledSystem, Solve] | None = None
+
+    def solve(values: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
+        nonlocal last
+        links = ~is_diagonal & (values != 0.0)
+        is_coupled = np.zeros(len(right_hand_side), dtype=bool)
+        is_coupled[row[links]] = True
+        is_coupled[pattern.indices[links]] = True
+        if last is None or not np.array_equal(is_coupled, last[0]):
+            system = coupled_system(pattern, is_coupled)
+            last = is_coupled, system, _mumps_of_all(system.indptr, system.indices)
+        _, system, solve_coupled = last
+        result = _each_alone(values[is_diagonal], right_hand_side, is_coupled)
+        if len(system.dofs):
+            result[system.dofs] = solve_coupled(
+                values[system.entries], right_hand_side[system.dofs]
+            )
+        return result
+
+    return solve
+
+
+def _each_alone(
+    diagonal: np.ndarray, right_hand_side: np.ndarray, is_coupled: np.ndarray
+) -> np.ndarray:
+    """Return the solution (n_dofs,) of dofs that are coupled to no other, zero elsewhere."""
+    if not np.isfinite(diagonal[~is_coupled]).all() or (diagonal[~is_coupled] == 0.0).any():
+        raise SingularMatrixError("a dof without stiffness")
+    solution: np.ndarray = np.where(is_coupled, 0.0, right_hand_side) / np.where(
+        is_coupled, 1.0, diagonal
+    )
+    return solution
+
+
+def _mumps_of_all(indptr: np.ndarray, indices: np.ndarray) -> Solve:
+    """Return a MUMPS solver of a matrix in compressed rows, which analyses it once."""
     from petsc4py import PETSc
 
-    n_dofs = len(pattern.indptr) - 1
-    values_in_place = np.zeros(len(pattern.indices))
+    n_dofs = len(indptr) - 1
+    values_in_place = np.zeros(len(indices))
     matrix = PETSc.Mat().createAIJ(
         size=(n_dofs, n_dofs),
-        csr=(pattern.indptr, pattern.indices, values_in_place),
+        csr=(indptr, indices, values_in_place),
         comm=PETSc.COMM_SELF,
     )
     solver = PETSc.KSP().create(PETSc.COMM_SELF)
@@ -51,7 +117,7 @@ def mumps(pattern: SparsityPattern) -> Solve:
     solution, load = matrix.createVecs()
 
     def solve(values: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
-        matrix.setValuesCSR(pattern.indptr, pattern.indices, values)
+        matrix.setValuesCSR(indptr, indices, values)
         matrix.assemble()
         solver.setOperators(matrix)
         load.setArray(right_hand_side)

@@ -5,6 +5,10 @@ Knows a residual, a tangent and a linear solver, and nothing of soil.
 Order of evaluation: residual and tangent at the start; then solve, step, and evaluate again,
 halving the step while the trial is inadmissible or the residual grows.  The last *accepted* iterate
 is returned; nothing is kept on failure.
+
+A dof that hardly anything holds can ask for a correction far beyond all others, which would have to
+be halved until nothing is left of them.  It can be given a limit of its own: the others then keep
+their full correction, and near the solution no limit is reached.
 """
 
 from __future__ import annotations
@@ -25,6 +29,9 @@ GROWTH_ALLOWED = 1.0
 
 ROUND_OFF = 2e-12
 """Relative residuals below this are round-off and say nothing about the order of convergence."""
+
+NO_LIMIT = np.array(np.inf)
+"""Of corrections."""
 
 EXACT = float(np.finfo(float).eps)
 """What a residual of zero counts as where logarithms are taken."""
@@ -58,11 +65,16 @@ def solve_newton(
     start: np.ndarray,
     tolerance: float,
     max_iterations: int,
+    largest_correction: np.ndarray = NO_LIMIT,
+    *,
+    gives_up: bool = False,
 ) -> NewtonResult:
     """Return the solution of ``evaluate(x).residual = 0`` from ``start`` (n_dofs,).
 
     Convergence means |residual| <= tolerance * reference; at least one correction is always made,
-    unless the start is exact to round-off.
+    unless the start is exact to round-off.  No dof is corrected by more than
+    ``largest_correction``, one number or (n_dofs,), in an iteration.  An iteration in which all
+    trials increase the residual goes on from the best of them, or ends if it ``gives_up``.
     """
     x = start
     state = evaluate(x)
@@ -77,10 +89,13 @@ def solve_newton(
                 correction = solve(state.tangent, -state.residual)
         except SingularMatrixError:
             return NewtonResult(x, False, np.array(residuals))
+        correction = np.clip(correction, -largest_correction, largest_correction)
         x, state = _backtrack(evaluate, x, correction, state)
         if not state.is_admissible:
             break
         residuals.append(_relative(state))
+        if gives_up and residuals[-1] > GROWTH_ALLOWED * residuals[-2]:
+            break
     is_converged = state.is_admissible and residuals[-1] <= tolerance
     return NewtonResult(x, is_converged, np.array(residuals))
 

@@ -74,6 +74,13 @@ class Numerics:
     """Stiffness h_v of the volumetric term, of a step only, over Young's modulus."""
     fill_threshold: Share = 0.3
     soft_stiffness: Annotated[float, Ge(0)] = 1e-2
+    """Stiffness, of a step only, of partly filled cells over Young's modulus and missing share."""
+    open_stiffness: Annotated[float, Ge(0)] = 0.0
+    """Stiffness, of a step only, of soil that has opened at its apex over Young's modulus."""
+    largest_correction: Annotated[float | None, Gt(0)] = None
+    """Of a displacement component in an iteration, over the size of the cells; None: no limit."""
+    second_start: bool = False
+    """Begin a step again from rest if the first trial, the last displacement, leads nowhere."""
     most_points_per_cell: Annotated[int, Ge(3)] = 48
     """Material points are merged in cells that hold more."""
     checkpoint_every: Annotated[int, Ge(1)] = 10
@@ -87,6 +94,12 @@ class ScrewNumerics(Numerics):
 
     tolerance: Annotated[float, Gt(0), Le(1e-3)] = 1e-4
     """Sand that leaves the pile converges slowly from there on, in a few cells at its apex."""
+    open_stiffness: Annotated[float, Ge(0)] = 1e-3
+    """Sand that has opened behind a trailing edge is held together by nothing else."""
+    largest_correction: Annotated[float | None, Gt(0)] = 0.1
+    """Loose nodes of opened sand would go metres and take all other corrections away."""
+    second_start: bool = True
+    """Soil behind an edge never moves twice in the same way."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +113,8 @@ class ScrewMeshOptions:
     size_far: Length
     edge_reach: Length
     """Distance from the edges within which cells have ``size_at_edges``."""
+    growth: Annotated[float, Gt(0), Le(1)] = 0.45
+    """Increase of the cell size per distance from edges, plates and shaft."""
     points_per_direction: Annotated[int, Ge(1), Le(3)] = 1
     """Points per sub-region and direction: a tetrahedron has 4 sub-regions, so 2 gives 32."""
     random_seed: Annotated[int, Ge(0)] = 0

@@ -28,8 +28,11 @@ LEAST_SECTIONS = 7
 INSIDE_SHARE = 0.6
 """Of the shaft radius: where the sections of a plate begin, inside the shaft."""
 
-GROWTH = 0.45
-"""Increase of the cell size per distance from the pile."""
+GROWTH_ABOVE_GROUND = 1.0
+"""Increase of the cell size per height above the ground, where cells only wait for soil."""
+
+OPTIMISERS = ("", "Netgen")
+"""Of gmsh, in order; the second removes the flat cells that the first leaves at the plates."""
 
 GMSH_TETRAHEDRON_10 = 11
 
@@ -49,13 +52,11 @@ def mesh_around_pile(
     options: ScrewMeshOptions,
     levels: Sequence[float],
     wall_angle: float = 0.0,
-    optimisers: Sequence[str] = ("",),
 ) -> BackgroundMesh:
     """Return a mesh of 10-node tetrahedra conforming to the pile and to all ``levels``.
 
     The levels in m, from the bottom to the top, are horizontal planes; the first and the last bound
-    the mesh.  The corners of the outer wall are turned by ``wall_angle`` in rad; ``optimisers`` are
-    gmsh's, in order.
+    the mesh.  The corners of the outer wall are turned by ``wall_angle`` in rad.
     """
     gmsh.initialize(interruptible=False)
     try:
@@ -66,7 +67,7 @@ def mesh_around_pile(
         _draw(pile, box.width, levels, wall_angle)
         _set_sizes(pile, box, options)
         gmsh.model.mesh.generate(3)
-        for optimiser in optimisers:
+        for optimiser in OPTIMISERS:
             gmsh.model.mesh.optimize(optimiser)
         gmsh.model.mesh.setOrder(2)
         return _collect()
@@ -163,14 +164,14 @@ def cell_size(pile: ScrewPile, options: ScrewMeshOptions) -> Callable[[float, fl
     def size_at(x: float, y: float, z: float) -> float:
         radius = float(np.hypot(x, y))
         outside = max(radius - a, tip - z, 0.0)
-        size = options.size_at_shaft + GROWTH * outside
+        size = options.size_at_shaft + options.growth * outside
         for helix in pile.helices:
             leading = pile.leading_level(helix)
             height = helix.pitch * helix.turns
             off_radius = max(radius - helix.radius, 0.0)
             off_level = max(leading - z, z - leading - height, 0.0)
             from_plate = float(np.hypot(off_radius, off_level))
-            size = min(size, options.size_at_plate + GROWTH * from_plate)
+            size = min(size, options.size_at_plate + options.growth * from_plate)
             for winding in (0.0, helix.winding):
                 polar = sense * winding
                 along = x * np.cos(polar) + y * np.sin(polar)
@@ -179,8 +180,8 @@ def cell_size(pile: ScrewPile, options: ScrewMeshOptions) -> Callable[[float, fl
                 rise = z - leading - helix.pitch * winding / (2.0 * np.pi)
                 from_edge = float(np.sqrt(beside**2 + across**2 + rise**2))
                 beyond = max(from_edge - options.edge_reach, 0.0)
-                size = min(size, options.size_at_edges + GROWTH * beyond)
-        return float(min(size, options.size_far))
+                size = min(size, options.size_at_edges + options.growth * beyond)
+        return float(min(size + GROWTH_ABOVE_GROUND * max(z, 0.0), options.size_far))
 
     return size_at
 

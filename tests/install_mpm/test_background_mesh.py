@@ -9,6 +9,7 @@ from install_mpm.background_mesh import (
     cell_quality,
     facets_opposite_vertices,
     make_background_mesh,
+    size_at_nodes,
     smallest_altitude,
 )
 from install_mpm.mesh_generation import generate_background_mesh
@@ -196,3 +197,12 @@ def test_position_of_the_mesh_depends_on_the_advance_only(mesh, pile, box):
     np.testing.assert_array_equal(there.nodes, again.nodes)
     np.testing.assert_array_equal(there.reference_nodes, mesh.reference_nodes)
     np.testing.assert_allclose(translate(there, 0.0, *levels).nodes, mesh.nodes, atol=1e-15)
+
+
+def test_size_at_nodes_is_that_of_the_smallest_cell(mesh):
+    """The determinant of a triangle is twice its area."""
+    size = np.sqrt(2.0 * areas(mesh))
+    expected = [
+        size[(mesh.cell_nodes == node).any(axis=1)].min() for node in range(len(mesh.nodes))
+    ]
+    np.testing.assert_allclose(size_at_nodes(mesh), expected, rtol=1e-12)

@@ -33,9 +33,9 @@ class Problem:
         )
 
 
-def solve(problem, start, tolerance=TOLERANCE, max_iterations=20):
+def solve(problem, start, tolerance=TOLERANCE, max_iterations=20, largest=np.inf):
     return solve_newton(
-        problem, solve_dense, np.atleast_1d(start).astype(float), tolerance, max_iterations
+        problem, solve_dense, np.atleast_1d(start).astype(float), tolerance, max_iterations, largest
     )
 
 
@@ -97,6 +97,38 @@ def test_step_is_halved_while_the_trial_is_inadmissible():
     assert result.solution[0] == pytest.approx(1.0)
 
 
+def held_and_loose():
+    """A curved spring beside a dof that next to nothing holds until it has gone a way of 1."""
+
+    def residual(x):
+        return np.array([np.arctan(x[0] - 1.0), 1e-6 * x[1] + max(x[1] - 1.0, 0.0) ** 3 - 1e-2])
+
+    def tangent(x):
+        return np.diag([1.0 / (1.0 + (x[0] - 1.0) ** 2), 1e-6 + 3.0 * max(x[1] - 1.0, 0.0) ** 2])
+
+    return Problem(residual, tangent)
+
+
+def test_loose_dof_does_not_take_the_correction_of_the_others_away():
+    """Its own would be 10 000; halved for its sake the other one gets next to nothing."""
+    limited, free = held_and_loose(), held_and_loose()
+    largest = np.array([np.inf, 0.3])
+    result = solve(limited, [0.5, 0.0], largest=largest)
+    assert result.is_converged
+    np.testing.assert_allclose(result.solution, [1.0, 1.0 + 0.01 ** (1 / 3)], rtol=1e-4)
+    assert limited.trials[1][0] - 0.5 == pytest.approx(1.25 * np.arctan(0.5))
+    assert limited.trials[1][1] == pytest.approx(0.3)
+    assert len(solve(free, [0.5, 0.0]).residuals) > 2 * len(result.residuals)
+
+
+def test_limit_that_is_not_reached_changes_nothing():
+    free, limited = (
+        solve(circle_and_line(), [3.0, 0.5]),
+        solve(circle_and_line(), [3.0, 0.5], largest=9.0),
+    )
+    np.testing.assert_array_equal(limited.residuals, free.residuals)
+
+
 def test_inadmissible_start_fails_without_a_correction():
     problem = Problem(lambda x: x, lambda x: np.ones(1), is_admissible=lambda x: False)
     result = solve(problem, 1.0)
@@ -133,6 +165,15 @@ def test_residual_without_root_fails():
     result = solve(Problem(lambda x: x**2 + 1.0, lambda x: 2.0 * x + 1e-3), 0.7)
     assert not result.is_converged
     assert np.isfinite(result.solution).all()
+
+
+def test_iteration_that_only_gets_worse_can_end_it():
+    """x^2 + 1 with a tangent of the wrong sign: every trial is worse than the start."""
+    problem = Problem(lambda x: x**2 + 1.0, lambda x: -2.0 * x)
+    impatient = solve_newton(problem, solve_dense, np.array([0.7]), TOLERANCE, 20, gives_up=True)
+    assert not impatient.is_converged
+    assert len(impatient.residuals) == 2
+    assert len(solve(problem, 0.7).residuals) == 21
 
 
 def test_last_iteration_may_converge():

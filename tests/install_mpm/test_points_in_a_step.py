@@ -1,5 +1,6 @@
 """What a step does to the material points, against plain arithmetic; which pile facets count."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +12,7 @@ from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive.frictional import OPENING
 from install_mpm.constitutive.parameters import CoulombInterface, MohrCoulomb
 from install_mpm.conventions import Kinematics
+from install_mpm.equilibrium import cell_options, open_share
 from install_mpm.ground import Ground
 from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
@@ -125,6 +127,33 @@ def test_void_ratio_follows_the_volume_of_the_point(make_column, rng):
 def specific_volume(points):
     """Its logarithm, elastic and plastic part."""
     return points.state_variables[:, 0] + np.trace(points.elastic_log_strain, axis1=1, axis2=2)
+
+
+def test_open_cells_are_held_and_closed_ones_are_not(make_column, rng):
+    """The stiffness of a step: modulus times volume times share of open integration points."""
+    column = make_column(Ground(unit_weight=18e3, k0=0.5, soil=DENSE_SAND))
+    points = column.scattered_points(rng)
+    state = points.state_variables.copy()
+    state[points.cell < 3, OPENING] = 0.01
+    points = points._replace(state_variables=state)
+    given = give_state(points, column.mesh, column.model, column.gradient)
+    state = given.quadrature.state_variables
+    state[0, OPENING] = 0.0  # one of the three points of the first cell
+    share = open_share(given.quadrature, column.model.materials)
+    np.testing.assert_allclose(share[:3], [2 / 3, 1.0, 1.0])
+    assert not share[3:].any()
+    numerics = replace(column.model.numerics, open_stiffness=1e-3)
+    closed = cell_options(given.fill, given.quadrature, column.model)
+    held = cell_options(given.fill, given.quadrature, column.model._replace(numerics=numerics))
+    added = held.soft_stiffness - closed.soft_stiffness
+    expected = 1e-3 * DENSE_SAND.youngs_modulus * share * given.fill.cell_volume / 3.0
+    np.testing.assert_allclose(added, expected, rtol=1e-9, atol=1e-6)
+
+
+def test_soil_without_openings_is_never_open(make_column, clay_ground):
+    column = make_column(clay_ground)
+    given = give_state(column.points(), column.mesh, column.model, column.gradient)
+    assert not open_share(given.quadrature, column.model.materials).any()
 
 
 def test_openings_of_a_cell_are_shared_or_closed(make_column, rng):
