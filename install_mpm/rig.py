@@ -7,14 +7,20 @@ import numpy as np
 from install_mpm.loaded_pile import LoadedMotions
 from install_mpm.pile import PileMotion
 from install_mpm.screw_path import Target, last_motion, last_way
-from install_mpm.screw_programme import Pose, rim_radius, rim_travel
+from install_mpm.screw_programme import (
+    Pose,
+    all_phases,
+    phase_motion,
+    rim_radius,
+    rim_travel,
+)
 from install_mpm.screw_record import weight_of
 from install_mpm.screw_setup import ScrewInstallation
 from install_mpm.state_file import InstalledState
 
 STEP_BACK = 1e-3
-"""Share of the last step by which the first trial of a new phase goes back: where the interface
-sticks again, its tangent shows that.
+"""Share of the last motion by which a first trial goes back where the next motion is not known:
+there the interface sticks, and its tangent shows that.
 """
 
 LARGEST_TRAVEL = 2.0
@@ -58,26 +64,39 @@ def loaded_motions(
     return LoadedMotions(translation, rotation, load, np.diag(change), start)
 
 
-def goes_on(state: InstalledState, target: Target) -> bool:
-    """Return whether the last step was one of the phase of ``target``."""
-    history = state.history
-    return bool(len(history.phase) and history.phase[-1] == target.phase
-                and history.phase_share[-1] > 0.0)  # fmt: skip
-
-
-def first_displacement(state: InstalledState, target: Target) -> np.ndarray:
+def first_displacement(
+    problem: ScrewInstallation, state: InstalledState, target: Target
+) -> np.ndarray:
     """Return the first trial displacement (n_nodes, dim) in m: that of the last step, to scale."""
-    scale = target.way / float(state.control.step) if goes_on(state, target) else 0.0
-    return scale * state.control.displacement_per_step
+    last = last_way(problem.pile, problem.programme, state.history)
+    share = _share_of_last(problem, state, target) * last / float(state.control.step)
+    return share * state.control.displacement_per_step
 
 
 def _first_motion(problem: ScrewInstallation, state: InstalledState, target: Target) -> Pose:
-    """Return the first trial of what is found, by the last step as well."""
-    history, scale = state.history, -STEP_BACK
-    if goes_on(state, target):
-        scale = target.way / last_way(problem.pile, problem.programme, history)
-    last = last_motion(history)
-    return Pose(scale * last.advance, scale * last.rotation)
+    """Return the first trial of what is found: as in the last step, to scale, or a little back."""
+    share, last = _share_of_last(problem, state, target) or -STEP_BACK, last_motion(state.history)
+    return Pose(share * last.advance, share * last.rotation)
+
+
+def _share_of_last(problem: ScrewInstallation, state: InstalledState, target: Target) -> float:
+    """Return how many times the last motion the next one is, as far as it is given.
+
+    Without a given motion it is that of the way, and zero where a phase begins.
+    """
+    history, last = state.history, last_motion(state.history)
+    radius = rim_radius(problem.pile)
+    phase = phase_motion(problem.pile, all_phases(problem.programme)[target.phase])
+    if rim_travel(problem.pile, phase) == 0.0:
+        is_new = not len(history.phase) or history.phase[-1] != target.phase
+        way = last_way(problem.pile, problem.programme, history)
+        return 0.0 if is_new or way == 0.0 else target.way / way
+    given = motion_to(state, target.pose)
+    along = radius**2 * given.rotation * last.rotation - float(given.translation[2]) * last.advance
+    squared = radius**2 * last.rotation**2 * (target.torque is None) + last.advance**2 * (
+        target.crowd_force is None
+    )
+    return max(along / squared, 0.0) if squared > 0.0 else 0.0
 
 
 def has_broken_away(problem: ScrewInstallation, target: Target, motion: PileMotion) -> bool:

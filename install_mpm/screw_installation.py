@@ -168,7 +168,7 @@ def step_to(problem: ScrewInstallation, state: InstalledState, target: Target) -
         state.interface,
         motion_to(state, target.pose),
         Prescribed(problem.supports, np.zeros_like(state.background_mesh.nodes)),
-        start=first_displacement(state, target),
+        start=first_displacement(problem, state, target),
         move_mesh=lambda mesh, motion: move_mesh(problem, mesh, pose_after(state, target, motion)),
         model=problem.model,
         gradient=problem.gradient,

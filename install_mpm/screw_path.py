@@ -109,6 +109,8 @@ def way_done(pile: ScrewPile, programme: ScrewProgramme, history: ScrewHistory) 
 
 def last_way(pile: ScrewPile, programme: ScrewProgramme, history: ScrewHistory) -> float:
     """Return the way in m of the last step; zero for the first one."""
+    if not len(history.phase):
+        return 0.0
     number, share = int(history.phase[-1]), float(history.phase_share[-1])
     if len(history.phase) > 1 and history.phase[-2] == number:
         share -= float(history.phase_share[-2])

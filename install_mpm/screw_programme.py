@@ -111,7 +111,7 @@ def lowest_pitch(pile: ScrewPile) -> float:
 
 
 def advancement_ratio(pile: ScrewPile, motion: Pose) -> float:
-    """Return the advancement ratio of a ``motion``; NaN if the pile does not turn or has no helix."""
+    """Return the advancement ratio of a ``motion``; NaN without a rotation or a helix."""
     if motion.rotation == 0.0 or not pile.helices:
         return float("nan")
     turns = -pile.sense * motion.rotation / (2.0 * np.pi)
