@@ -27,7 +27,7 @@ from install_mpm.kernels.equilibrium import evaluate_cells
 from install_mpm.kernels.interface_force import evaluate_interface
 from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
 from install_mpm.linear_solvers import BorderedTangent, LinearSolve, solve_bordered
-from install_mpm.loaded_pile import LoadedMotions, border, with_found
+from install_mpm.loaded_pile import LoadedMotions, border, turning_places, with_found
 from install_mpm.newton import Evaluation, NewtonResult, solve_newton
 from install_mpm.pile import PileMotion, rigid_displacement
 from install_mpm.timing import measured
@@ -254,11 +254,13 @@ class StepSystem:
     def _bordered(self, evaluation: Evaluation, nodal: np.ndarray, sizes: np.ndarray) -> Evaluation:
         """Return the evaluation with the equations of the loaded motions after those of soil."""
         assert self.loaded is not None
-        nodes = self.model.elements.nodes
+        elements, dofs = self.model.elements, self.model.pattern.dofs[1]
+        start = self.mesh.nodes[elements.nodes]
+        soil = start + nodal[elements.nodes]
         with measured("assembly"):
             edge = border(
-                self.loaded, sizes, self.mesh.nodes[nodes] + nodal[nodes], self.element_force,
-                self.element_stiffness, self.model.pattern.dofs[1], self.is_free.ravel(),
+                self.loaded, sizes, soil, turning_places(elements, start, soil, self.motion),
+                self.element_force, self.element_stiffness, dofs, self.is_free.ravel(),
             )  # fmt: skip
         return evaluation._replace(
             residual=np.append(evaluation.residual, edge.residual),

@@ -150,7 +150,7 @@ def advance_pile(
         If the step was halved too often already, or the pile leaves the place it can be in.
     """
     result = step_to(problem, state, target)
-    is_lost = result.is_converged and has_broken_away(problem, target, result.equilibrium.motion)
+    is_lost = has_broken_away(problem, target, result.equilibrium.motion)
     if result.is_converged and not is_lost:
         return accept(problem, state, result, target), True
     if int(state.control.cuts) >= problem.numerics.max_cuts:
@@ -200,9 +200,9 @@ def _where_lost(problem: ScrewInstallation, target: Target, motion: PileMotion) 
     ]  # fmt: skip
     return (
         f"installation: the ground cannot carry the {' and '.join(loads)} of phase "
-        f"{all_phases(problem.programme)[target.phase].name!r}: the pile goes "
-        f"{-motion.translation[2]:.3g} m down and turns by {np.degrees(motion.rotation):.3g} deg "
-        "in a step; give less"
+        f"{all_phases(problem.programme)[target.phase].name!r}: the pile would go "
+        f"{-motion.translation[2]:.3g} m down and turn by {np.degrees(motion.rotation):.3g} deg "
+        "in a step; give less, or more steps in which it rises"
     )
 
 

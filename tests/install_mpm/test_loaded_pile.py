@@ -16,7 +16,14 @@ from install_mpm.linear_solvers import (
 )
 from install_mpm.options import Box, Numerics, ScrewMeshOptions
 from install_mpm.rig import loaded_motions, motion_to
-from install_mpm.screw_installation import START, accept, next_step, step_to
+from install_mpm.screw_installation import (
+    START,
+    PileLostError,
+    accept,
+    advance_pile,
+    next_step,
+    step_to,
+)
 from install_mpm.screw_path import Target
 from install_mpm.screw_pile import Helix, ScrewPile
 from install_mpm.screw_pile_mesh import generate_screw_mesh
@@ -140,18 +147,20 @@ def test_a_column_alone_is_the_derivative_by_the_motion_of_the_pile(start, rng):
 # --- steps ----------------------------------------------------------------------------------------
 
 
+def under(problem, **load):
+    """The problem with one step of the same rotation under a load."""
+    phase = Phase("in", 0.03 / np.pi, steps=1, **load)
+    return problem._replace(programme=ScrewProgramme((phase,), 0.03, release=False))
+
+
 def test_a_recorded_crowd_force_gives_the_advance_of_the_step_that_it_comes_from(start):
     problem, state = start
-    driven = accept(
-        problem, state, step_to(problem, state, next_step(problem, state)),
-        next_step(problem, state),
-    )  # fmt: skip
+    whole = state.control._replace(step=np.array(0.04))  # the phase is one step in both runs
+    state = state._replace(control=whole)
+    target = next_step(problem, state)
+    driven = accept(problem, state, step_to(problem, state, target), target)
     force = float(driven.history.crowd_force[-1])
-    loaded = problem._replace(
-        programme=problem.programme.__class__(
-            (Phase("in", 0.03 / np.pi, crowd_force=force, steps=1),), 0.03, release=False
-        )
-    )
+    loaded = under(problem, crowd_force=force)
     target = next_step(loaded, state)
     assert target.crowd_force == force
     found = accept(loaded, state, step_to(loaded, state, target), target)
@@ -161,3 +170,33 @@ def test_a_recorded_crowd_force_gives_the_advance_of_the_step_that_it_comes_from
     assert history.torque[-1] == pytest.approx(driven.history.torque[-1], rel=1e-4)
     assert history.rotation[-1] == driven.history.rotation[-1]
     assert history.convergence_order[-1] > 1.5
+
+
+def test_a_force_that_the_ground_cannot_carry_is_refused_in_a_sentence(start):
+    problem, state = start
+    loaded = under(problem, crowd_force=500e3)
+    loaded = loaded._replace(numerics=Numerics(tolerance=1e-6, max_cuts=0))
+    with pytest.raises(PileLostError, match="cannot carry the crowd force of 500 kN") as caught:
+        advance_pile(loaded, state, next_step(loaded, state))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_loaded_pile_stays_where_the_model_reaches(start):
+    problem, state = start
+    shallow = under(problem, crowd_force=0.0)._replace(box=BOX.__class__(2.75, 2.2, 0.5))
+    target = next_step(shallow, state)
+    with pytest.raises(PileLostError, match="make the phase shorter"):
+        accept(shallow, state, step_to(shallow, state, target), target)
+
+
+def test_a_rest_leaves_the_pile_in_its_place(start):
+    problem, state = start
+    rest = Phase("rest", advance=0.0, steps=1)
+    resting = problem._replace(programme=ScrewProgramme((rest,), 0.03, release=False))
+    target = next_step(resting, state)
+    result = step_to(resting, state, target)
+    after = accept(resting, state, result, target)
+    assert after.history.travel[-1] == 0.0
+    assert next_step(resting, after) is None
+    force = after.history.crowd_force
+    assert force[-1] == pytest.approx(force[0], abs=1e-3 * 8e3)
