@@ -14,6 +14,7 @@ import numpy as np
 from install_mpm import carriers
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.equilibrium import Prescribed, StepSystem
+from install_mpm.geostatic import change_with_height
 from install_mpm.injection import sub_region_of
 from install_mpm.interface import InterfacePoints
 from install_mpm.location import relocate
@@ -44,7 +45,8 @@ class _Carried(NamedTuple):
     """What a mesh makes of the state of the points."""
 
     stress: np.ndarray
-    """Cauchy stress at the integration point of each material point, (n_points, 3, 3) in Pa."""
+    """Cauchy stress at the integration point of each material point, moved to its height as in
+    undisturbed ground, (n_points, 3, 3) in Pa."""
     force: float
     torque: float
     energy: float
@@ -98,8 +100,15 @@ def _carried(
     force = (system.external - system.internal)[on_pile]
     stress, strain = system.trial.cauchy_stress, given.quadrature.elastic_log_strain
     own = points.cell * len(model.cell.integration_coordinates) + sub_region_of(points, model.cell)
+    height = np.einsum(
+        "pa,pa->p", given.quadrature.shape_values[own], mesh.nodes[mesh.cell_nodes[points.cell], 2]
+    )
+    change = change_with_height(
+        problem.gradient, points.material, height, points.position[:, 2], 2,
+        points.state_variables.shape[1],
+    )  # fmt: skip
     return _Carried(
-        stress[own],
+        stress[own] + change.stress,
         float(force[:, 2].sum()),
         float(np.cross(mesh.nodes[on_pile], force)[:, 2].sum()),
         float(0.5 * given.quadrature.volume @ (stress * strain).sum(axis=(1, 2))),
