@@ -21,9 +21,10 @@ import numpy as np
 
 from install_mpm import carriers
 from install_mpm.equilibrium import Prescribed, StepSystem
-from install_mpm.screw_installation import advance_pile, motion_to, travelled
+from install_mpm.rig import motion_to
+from install_mpm.screw_installation import advance_pile, next_step
+from install_mpm.screw_path import START
 from install_mpm.screw_pile_mesh import generate_screw_mesh
-from install_mpm.screw_programme import pose_at
 from install_mpm.screw_setup import geostatic_state, set_up
 from install_mpm.step import switch_on
 from workflows.case import read_case
@@ -32,16 +33,17 @@ CASE = Path(__file__).parents[1] / "cases" / "screwpile_quick.toml"
 EVALUATIONS = 20
 
 
-def next_step(case):
+def second_step(case):
     """Return the equations of the second step of the pile, and its first trial displacement."""
     mesh = generate_screw_mesh(case.pile, case.box, case.background_mesh)
     problem = set_up(
         case.ground, case.pile, case.interface, case.box, case.installation, case.numerics, mesh
     )
     state = geostatic_state(problem, mesh, case.background_mesh, "")
-    state, is_accepted = advance_pile(problem, state, case.installation.step)
+    state, _ = advance_pile(problem, state, START)
+    state, is_accepted = advance_pile(problem, state, next_step(problem, state))
     assert is_accepted
-    pose = pose_at(case.pile, case.installation, travelled(state) + case.installation.step)
+    pose = next_step(problem, state).pose
     given = carriers.give_state(
         state.material_points, state.background_mesh, problem.model, problem.gradient
     )
@@ -68,7 +70,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
     case, _ = read_case(CASE, parser.parse_args().set)
-    system, trial, state = next_step(case)
+    system, trial, state = second_step(case)
     points, cells = len(state.material_points.mass), len(state.background_mesh.cell_nodes)
     evaluation = system.evaluate(trial)
     changed = system.trial.state_variables != system.points.state_variables

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +26,8 @@ from install_mpm.kernels.cell_records import CellOptions
 from install_mpm.kernels.equilibrium import evaluate_cells
 from install_mpm.kernels.interface_force import evaluate_interface
 from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
-from install_mpm.linear_solvers import Solve
+from install_mpm.linear_solvers import BorderedTangent, LinearSolve, solve_bordered
+from install_mpm.loaded_pile import LoadedMotions, border, turning_places, with_found
 from install_mpm.newton import NO_LIMIT, Evaluation, NewtonResult, solve_newton
 from install_mpm.pile import PileMotion, rigid_displacement
 from install_mpm.timing import measured
@@ -69,6 +71,8 @@ class StepEquilibrium(NamedTuple):
     """Weight and nodal loads, (n_nodes, dim) in N."""
     contact: Contact
     """What pile and soil do to each other at the end of the step."""
+    motion: PileMotion
+    """Of the pile in the step, with what was found of it."""
 
 
 def youngs_modulus(materials: Materials) -> np.ndarray:
@@ -128,49 +132,56 @@ def find_equilibrium(
     prescribed: Prescribed,
     start: np.ndarray,
     model: Discretisation,
+    loaded: LoadedMotions | None = None,
 ) -> StepEquilibrium:
     """Return the equilibrium of soil and interface at the end of the step (paper, 2.1, phase ii).
 
-    ``start`` (n_nodes, dim) is the first trial displacement in m.
+    ``start`` (n_nodes, dim) is the first trial displacement in m.  The pile makes the given
+    ``motion`` and those that are ``loaded``, as far as their loads take it.
     """
-    system = StepSystem(mesh, points, fill, interface, motion, prescribed, model)
+    system = StepSystem(mesh, points, fill, interface, motion, prescribed, model, loaded)
     first = np.where(prescribed.is_prescribed, prescribed.displacement, start)
     first = np.where(system.is_free | prescribed.is_prescribed, first, 0.0).ravel()
+    if loaded is not None:
+        first = np.append(first, loaded.start)
     if prescribed.displacement.any() and not start.any():
-        first = _elastic_solution(system, first, model.solve)
+        first = _elastic_solution(system, first)
     newton = _newton_from(system, first, gives_up=model.numerics.second_start)
     if not newton.is_converged and model.numerics.second_start:
         at_rest = np.where(prescribed.is_prescribed, prescribed.displacement, 0.0).ravel()
+        at_rest = np.append(at_rest, np.zeros(first.size - start.size))
         again, wasted = _newton_from(system, at_rest), newton.residuals
         both = np.concatenate([wasted[np.isfinite(wasted)], again.residuals])
         newton = again._replace(residuals=both)
     reaction = np.where(prescribed.is_prescribed, system.out_of_balance, 0.0)
     return StepEquilibrium(
         newton,
-        newton.solution.reshape(start.shape),
+        newton.solution[: start.size].reshape(start.shape),
         system.trial,
         system.traction,
         reaction,
         system.internal,
         system.external,
         system.contact(),
+        system.motion,
     )
 
 
 def _newton_from(system: StepSystem, first: np.ndarray, *, gives_up: bool = False) -> NewtonResult:
-    """Return what Newton's method makes of the trial displacement ``first`` (n_dofs,) in m."""
+    """Return what Newton's method makes of the trial ``first`` (n_unknowns,) in m."""
     numerics, largest = system.model.numerics, NO_LIMIT
     if numerics.largest_correction is not None:
-        largest = numerics.largest_correction * size_at_nodes(system.mesh)
-        largest = np.repeat(largest, system.mesh.nodes.shape[1])
+        of_nodes = numerics.largest_correction * size_at_nodes(system.mesh)
+        largest = np.full(len(first), NO_LIMIT)
+        largest[: system.external.size] = np.repeat(of_nodes, system.mesh.nodes.shape[1])
     return solve_newton(
-        system.evaluate, system.model.solve, first, numerics.tolerance, numerics.max_iterations,
+        system.evaluate, system.solve, first, numerics.tolerance, numerics.max_iterations,
         largest, gives_up=gives_up,
     )  # fmt: skip
 
 
-def _elastic_solution(system: StepSystem, first: np.ndarray, solve: Solve) -> np.ndarray:
-    """Return the trial displacement (n_dofs,) of elastic soil: one linear solve from ``first``.
+def _elastic_solution(system: StepSystem, first: np.ndarray) -> np.ndarray:
+    """Return the trial (n_unknowns,) of elastic soil: one linear solve from ``first``.
 
     Driven nodes beside nodes at rest would put all of the motion into one row of cells, far beyond
     yield; the elastic solution spreads it.  Soil whose elasticity is not linear goes without.
@@ -183,7 +194,7 @@ def _elastic_solution(system: StepSystem, first: np.ndarray, solve: Solve) -> np
     system.materials = soils
     if not state.is_admissible:  # a cell is crushed: the step is too long
         return first
-    return first + solve(state.tangent, -state.residual)
+    return first + system.solve(state.tangent, -state.residual)
 
 
 class StepSystem:
@@ -198,6 +209,7 @@ class StepSystem:
         motion: PileMotion,
         prescribed: Prescribed,
         model: Discretisation,
+        loaded: LoadedMotions | None = None,
     ) -> None:
         n_nodes, dim = mesh.nodes.shape
         n_cells, n_cell_nodes = mesh.cell_nodes.shape
@@ -206,8 +218,12 @@ class StepSystem:
         self.materials = model.materials
         self.interface, self.is_prescribed = interface, prescribed.is_prescribed
         self.options = cell_options(fill, points, model)
-        self.pile_displacement = rigid_displacement(motion, interface.position)
-        self.rotation = motion.rotation
+        self.given, self.loaded = motion, loaded
+        self.solve: LinearSolve = (
+            model.solve if loaded is None else partial(solve_bordered, model.solve)
+        )
+        is_turning = bool(motion.rotation or (loaded is not None and loaded.rotation.any()))
+        self.is_swept = model.elements.is_swept if is_turning else None
         self.trial = empty_trial(points)
         self.traction = np.zeros_like(interface.traction)
         self.cell_force = np.zeros((n_cells, n_cell_nodes, dim))
@@ -224,9 +240,14 @@ class StepSystem:
         is_held[mesh.cell_nodes[fill.is_active]] = True
         self.is_free = is_held[:, None] & ~prescribed.is_prescribed
 
-    def evaluate(self, displacement: np.ndarray) -> Evaluation:
-        """Return residual and tangent at the trial ``displacement`` (n_dofs,)."""
-        nodal = displacement.reshape(self.external.shape)
+    def evaluate(self, unknowns: np.ndarray) -> Evaluation:
+        """Return residual and tangent at a trial.
+
+        The ``unknowns`` are the displacement (n_dofs,) in m, then the sizes of loaded motions.
+        """
+        nodal = unknowns[: self.external.size].reshape(self.external.shape)
+        sizes = unknowns[self.external.size :]
+        self._move_pile(sizes)
         with measured("kernels"):
             self._evaluate_blocks(nodal)
         is_admissible = not self.trial.status.any()
@@ -252,7 +273,31 @@ class StepSystem:
         supports = out_of_balance[self.is_prescribed.ravel()]
         reference = sum(map(np.linalg.norm, (self.external, supports, interface)))
         residual = np.where(self.is_free.ravel(), out_of_balance, 0.0)
-        return Evaluation(residual, values, float(reference) or 1.0, is_admissible)
+        evaluation = Evaluation(residual, values, float(reference) or 1.0, is_admissible)
+        return evaluation if self.loaded is None else self._bordered(evaluation, nodal, sizes)
+
+    def _move_pile(self, sizes: np.ndarray) -> None:
+        """Move the pile as given, and by ``sizes`` (m,) in m of its loaded motions."""
+        self.motion = self.given
+        if self.loaded is not None:
+            self.motion = with_found(self.given, self.loaded, sizes)
+        self.pile_displacement = rigid_displacement(self.motion, self.interface.position)
+
+    def _bordered(self, evaluation: Evaluation, nodal: np.ndarray, sizes: np.ndarray) -> Evaluation:
+        """Return the evaluation with the equations of the loaded motions after those of soil."""
+        assert self.loaded is not None
+        elements, dofs = self.model.elements, self.model.pattern.dofs[1]
+        start = self.mesh.nodes[elements.nodes]
+        soil = start + nodal[elements.nodes]
+        with measured("assembly"):
+            edge = border(
+                self.loaded, sizes, soil, turning_places(elements, start, soil, self.motion),
+                self.element_force, self.element_stiffness, dofs, self.is_free.ravel(),
+            )  # fmt: skip
+        return evaluation._replace(
+            residual=np.append(evaluation.residual, edge.residual),
+            tangent=BorderedTangent(evaluation.tangent, edge.columns, edge.rows, edge.corner),
+        )
 
     def contact(self) -> Contact:
         """Return the forces between pile and soil at the last evaluation."""
@@ -271,7 +316,7 @@ class StepSystem:
         )  # fmt: skip
         self.soil_displacement = soil_displacement(self.model.elements, nodal)
         self.axes = step_axes(
-            self.interface, self.model.elements.is_swept, self.rotation,
+            self.interface, self.is_swept, self.motion.rotation,
             self.pile_displacement, self.soil_displacement,
         )  # fmt: skip
         evaluate_interface(
@@ -280,7 +325,7 @@ class StepSystem:
             self.interface.traction, self.axes, self.pile_displacement,
             nodal, self.element_force, self.element_stiffness, self.traction,
         )  # fmt: skip
-        if self.rotation:
+        if self.is_swept is not None:
             contact = self.contact()
             add_turning_of_traction(
                 self.element_stiffness, self.model.elements, contact.force, contact.position

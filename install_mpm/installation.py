@@ -181,7 +181,7 @@ def advance_pile(
         PileMotion(np.array([0.0, -advance])),
         Prescribed(problem.supports, np.zeros_like(state.background_mesh.nodes)),
         start=scale * control.displacement_per_step,
-        move_mesh=lambda mesh: translate(
+        move_mesh=lambda mesh, _: translate(
             mesh,
             penetration - (problem.reference_depth - problem.pile.embedment),
             -problem.reference_depth,

@@ -194,14 +194,14 @@ def step_axes(
     pressure on a cylinder has no torque however far the soil stays behind.
     """
     start = local_axes(points)
-    if is_swept is None or not rotation:
+    if is_swept is None:
         slip = _turned(start, np.full(len(start), rotation / 2.0))
         return StepAxes(slip, slip, _turned(start, np.full(len(start), rotation)))
     of_soil = np.where(is_swept, _polar_change(points.position, soil), 0.0)
     slip = _turned(start, (rotation + of_soil) / 2.0)
     behind = np.where(is_swept, (rotation - of_soil) / 2.0, 0.0)
     slip[:, -1] /= np.cos(behind)[:, None]  # so that motion along the radius counts in full
-    by_angle = 0.5 * _quarter_turned(slip)
+    by_angle = 0.5 * quarter_turned(slip)
     by_angle[:, -1] -= 0.5 * np.tan(behind)[:, None] * slip[:, -1]
     by_angle = np.einsum("pij,pj->pi", by_angle, pile - soil)
     turn = np.where(is_swept[:, None], _angle_gradient(points.position + soil), 0.0)
@@ -225,7 +225,7 @@ def _angle_gradient(position: np.ndarray) -> np.ndarray:
     return gradient
 
 
-def _quarter_turned(vectors: np.ndarray) -> np.ndarray:
+def quarter_turned(vectors: np.ndarray) -> np.ndarray:
     """Return ``vectors`` (..., dim) turned by 90 degrees about the z axis, without their z part.
 
     It is their derivative by an angle of rotation.
@@ -259,7 +259,7 @@ def add_turning_of_traction(
     shape = elements.shape_values
     n_points, n_facet_nodes = shape.shape
     change = _angle_gradient(position) * elements.is_swept[:, None]
-    turned = _quarter_turned(forces)
+    turned = quarter_turned(forces)
     dim = position.shape[1]
     stiffness[:, :n_facet_nodes, :, :n_facet_nodes, :] += np.einsum(
         "qa,eqi,qb,eqj->eaibj", shape, turned.reshape(-1, n_points, dim), shape,

@@ -1,8 +1,8 @@
 """Linear solvers as values: each function returns ``solve(values, right_hand_side) -> solution``.
 
-The sparsity pattern is given once, so that analysis need not be repeated.  The tangent is not
-symmetric in general (mean dilatation, non-associated flow, friction), so only LU methods are
-offered here.
+The right-hand side is (n_dofs,), or (n_dofs, n) for n of them with one factorisation.  The sparsity
+pattern is given once, so that analysis need not be repeated.  The tangent is not symmetric in
+general (mean dilatation, non-associated flow, friction), so only LU methods are offered here.
 """
 
 from __future__ import annotations
@@ -18,6 +18,9 @@ from scipy.sparse.linalg import splu
 from install_mpm.assembly import SparsityPattern, as_matrix
 
 Solve = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+LinearSolve = Callable[[Any, np.ndarray], np.ndarray]
+"""Takes a tangent, bordered or not, and a right-hand side."""
 
 
 class SingularMatrixError(ArithmeticError):
@@ -86,12 +89,13 @@ def mumps(pattern: SparsityPattern) -> Solve:
 def _each_alone(
     diagonal: np.ndarray, right_hand_side: np.ndarray, is_coupled: np.ndarray
 ) -> np.ndarray:
-    """Return the solution (n_dofs,) of dofs that are coupled to no other, zero elsewhere."""
-    if not np.isfinite(diagonal[~is_coupled]).all() or (diagonal[~is_coupled] == 0.0).any():
+    """Return the solution of dofs that are coupled to no other, zero elsewhere."""
+    is_alone = ~is_coupled
+    stiffness = diagonal[is_alone]
+    if not np.isfinite(stiffness).all() or (stiffness == 0.0).any():
         raise SingularMatrixError("a dof without stiffness")
-    solution: np.ndarray = np.where(is_coupled, 0.0, right_hand_side) / np.where(
-        is_coupled, 1.0, diagonal
-    )
+    solution = np.zeros_like(right_hand_side)
+    solution[is_alone] = (right_hand_side[is_alone].T / stiffness).T
     return solution
 
 
@@ -120,9 +124,12 @@ def _mumps_of_all(indptr: np.ndarray, indices: np.ndarray) -> Solve:
         matrix.setValuesCSR(indptr, indices, values)
         matrix.assemble()
         solver.setOperators(matrix)
-        load.setArray(right_hand_side)
-        solver.solve(load, solution)
-        result = np.array(solution.getArray())
+        columns = []
+        for column in right_hand_side.reshape(n_dofs, -1).T:
+            load.setArray(column)
+            solver.solve(load, solution)
+            columns.append(np.array(solution.getArray()))
+        result = np.stack(columns, axis=1).reshape(right_hand_side.shape)
         if solver.getConvergedReason() < 0 or not np.isfinite(result).all():
             factorisation.reset()  # PETSc would leave out the factorisation after one that failed
             solver.setOperators(matrix)
@@ -164,3 +171,40 @@ def superlu(pattern: SparsityPattern) -> Solve:
 
 SOLVERS: dict[str, Callable[[SparsityPattern], Solve]] = {"mumps": mumps, "superlu": superlu}
 """Names that a case file can give."""
+
+
+class BorderedTangent(NamedTuple):
+    """The tangent [[K, C], [R, D]] of the dofs of the pattern and of a few more beside them."""
+
+    values: np.ndarray
+    """Of K, in the order of the sparsity pattern."""
+    columns: np.ndarray
+    """C, (n_dofs, m)."""
+    rows: np.ndarray
+    """R, (m, n_dofs)."""
+    corner: np.ndarray
+    """D, (m, m)."""
+
+
+def solve_bordered(
+    solve: Solve, tangent: BorderedTangent, right_hand_side: np.ndarray
+) -> np.ndarray:
+    """Return the solution (n_dofs + m,) of a bordered system: one factorisation, 1 + m solutions.
+
+    Block elimination: with K z = b and K Z = C, (D - R Z) s = e - R z and u = z - Z s.
+
+    Raises
+    ------
+    SingularMatrixError
+        If K or the Schur complement D - R Z is singular.
+    """
+    n_dofs = len(tangent.columns)
+    load, rest = right_hand_side[:n_dofs], right_hand_side[n_dofs:]
+    solved = solve(tangent.values, np.column_stack([load, tangent.columns]))
+    alone, by_border = solved[:, 0], solved[:, 1:]
+    complement = tangent.corner - tangent.rows @ by_border
+    try:
+        border = np.linalg.solve(complement, rest - tangent.rows @ alone)
+    except np.linalg.LinAlgError as error:
+        raise SingularMatrixError(f"Schur complement: {error}") from error
+    return np.concatenate([alone - by_border @ border, border])

@@ -14,11 +14,11 @@ their full correction, and near the solution no limit is reached.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from install_mpm.linear_solvers import SingularMatrixError, Solve
+from install_mpm.linear_solvers import LinearSolve, SingularMatrixError
 from install_mpm.timing import measured
 
 BACKTRACKS = 6
@@ -42,8 +42,8 @@ class Evaluation(NamedTuple):
 
     residual: np.ndarray
     """Out-of-balance force of the free dofs, zero elsewhere, (n_dofs,) in N."""
-    tangent: np.ndarray
-    """Values of the constrained tangent in the order of the sparsity pattern."""
+    tangent: Any
+    """The constrained tangent, as the linear solver takes it."""
     reference: float
     """Force in N that the residual is measured against."""
     is_admissible: bool
@@ -61,7 +61,7 @@ class NewtonResult(NamedTuple):
 
 def solve_newton(
     evaluate: Callable[[np.ndarray], Evaluation],
-    solve: Solve,
+    solve: LinearSolve,
     start: np.ndarray,
     tolerance: float,
     max_iterations: int,

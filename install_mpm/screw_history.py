@@ -13,6 +13,11 @@ def _per_step(unit: str, doc: str, dtype: str = "float64", *, may_be_nan: bool =
     return Field(("load_step",), unit, doc, dtype, may_be_nan)
 
 
+def _added(unit: str, doc: str) -> Field:
+    """Describe what older files do not have, or what is not there in every step."""
+    return Field(("load_step",), unit, doc, may_be_nan=True, default=np.nan)
+
+
 def _per_part(unit: str, doc: str) -> Field:
     return Field(("load_step", "part"), unit, doc)
 
@@ -20,11 +25,19 @@ def _per_part(unit: str, doc: str) -> Field:
 class ScrewHistory(NamedTuple):
     """What happened in each accepted load step."""
 
-    travel: Annotated[np.ndarray, _per_step("m", "travel of the rim at the end of the step")]
+    travel: Annotated[np.ndarray, _per_step("m", "travel of the rim, given and found, so far")]
     penetration: Annotated[np.ndarray, _per_step("m", "pile penetration at the end of the step")]
     rotation: Annotated[np.ndarray, _per_step("rad", "pile rotation, right-handed about +z")]
     release_share: Annotated[
         np.ndarray, _per_step("", "share of the rig's loads that has been taken off")
+    ]
+    phase: Annotated[
+        np.ndarray,
+        Field(("load_step",), "", "number of the phase from 0, the release last; -1: not recorded",
+              "int64", default=-1),
+    ]  # fmt: skip
+    phase_share: Annotated[
+        np.ndarray, _added("", "share of the phase that is done; NaN: not recorded")
     ]
     crowd_force: Annotated[
         np.ndarray,
@@ -95,6 +108,31 @@ class ScrewHistory(NamedTuple):
     ]
     smallest_volume_ratio: Annotated[np.ndarray, _per_step("", "smallest J of a material point")]
     largest_volume_ratio: Annotated[np.ndarray, _per_step("", "largest J of a material point")]
+    advancement_ratio: Annotated[
+        np.ndarray,
+        _added("", "advance of the step per turn over the pitch of the lowest helix; NaN without"),
+    ]
+    mass_error: Annotated[
+        np.ndarray, _added("", "relative change of the mass of all points by merging and splitting")
+    ]
+    volume_error: Annotated[np.ndarray, _added("", "the same of their volume; NaN: not recorded")]
+    pressure_scatter: Annotated[
+        np.ndarray,
+        _added("Pa", "mean pressure of points about that of their cell, root mean square within a "
+                     "diameter of the pile"),
+    ]  # fmt: skip
+    winding_stress_change: Annotated[
+        np.ndarray, _added("", "relative change of stress by winding the mesh back; NaN without")
+    ]
+    winding_force_change: Annotated[
+        np.ndarray, _added("N", "change of the vertical force of that stress on the pile")
+    ]
+    winding_torque_change: Annotated[
+        np.ndarray, _added("N m", "change of its torque, positive against driving the pile down")
+    ]
+    winding_energy_change: Annotated[
+        np.ndarray, _added("J", "change of half of stress times elastic strain in the soil")
+    ]
     residual_history: Annotated[
         np.ndarray,
         Field(("load_step", "iteration"), "", "relative residuals, NaN-padded", may_be_nan=True),

@@ -80,6 +80,13 @@ class ScrewPile:
         """Hand of the helices: +1 right, -1 left."""
         return 1.0 if self.hand == "right" else -1.0
 
+    @property
+    def highest_plate(self) -> float:
+        """Height in m of the top of the uppermost helix above the tip."""
+        return max(
+            (h.height + h.pitch * h.turns + h.thickness / 2.0 for h in self.helices), default=0.0
+        )
+
     def leading_level(self, helix: Helix) -> float:
         """Return z in m of the middle of the leading edge at the start."""
         return -self.embedment + helix.height

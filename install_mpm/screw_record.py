@@ -9,12 +9,14 @@ import numpy as np
 from install_mpm.background_mesh import cell_quality
 from install_mpm.equilibrium import StepEquilibrium
 from install_mpm.newton import convergence_order
-from install_mpm.pile import PileMotion, rigid_displacement
+from install_mpm.pile import rigid_displacement
+from install_mpm.screw_path import Target
 from install_mpm.screw_pile import Helix, ScrewPile, part_names
-from install_mpm.screw_programme import Pose
+from install_mpm.screw_programme import Pose, advancement_ratio, rim_travel
 from install_mpm.screw_setup import ScrewInstallation
 from install_mpm.state_file import InstalledState
 from install_mpm.step import StepResult
+from install_mpm.stress_quality import cells_near, pressure_scatter
 
 
 class Work(NamedTuple):
@@ -30,10 +32,10 @@ class Work(NamedTuple):
     weight: float
 
 
-def work_of_step(state: InstalledState, equilibrium: StepEquilibrium, motion: PileMotion) -> Work:
+def work_of_step(state: InstalledState, equilibrium: StepEquilibrium) -> Work:
     """Return the work of a step: forces at its end on the displacements of the step."""
     contact, start = equilibrium.contact, state.interface.position
-    pile, soil = rigid_displacement(motion, start), contact.position - start
+    pile, soil = rigid_displacement(equilibrium.motion, start), contact.position - start
     return Work(
         rig=-float((contact.force * pile).sum()),
         interface=-float((contact.force * (pile - soil)).sum()),
@@ -46,17 +48,24 @@ def history_row(
     problem: ScrewInstallation,
     state: InstalledState,
     result: StepResult,
-    motion: PileMotion,
+    target: Target,
     pose: Pose,
-    travel: float,
 ) -> dict[str, object]:
-    """Return the history of an accepted step in which the pile made ``motion``."""
+    """Return the history of an accepted step to ``target``, which ended at ``pose``."""
     equilibrium, newton = result.equilibrium, result.equilibrium.newton
-    work = work_of_step(state, equilibrium, motion)
+    work = work_of_step(state, equilibrium)
+    moved = Pose(
+        pose.advance - float(state.pile.penetration), pose.rotation - float(state.pile.rotation)
+    )
+    is_release = target.phase == len(problem.programme.phases)
     return {
-        "travel": travel,
+        "travel": float(state.history.travel[-1:].sum()) + rim_travel(problem.pile, moved),
         "penetration": pose.advance,
         "rotation": pose.rotation,
+        "advancement_ratio": advancement_ratio(problem.pile, moved),
+        "release_share": target.share if is_release else 0.0,
+        "phase": target.phase,
+        "phase_share": target.share,
         **_resultants(problem, equilibrium, pose),
         **_far_field(state, equilibrium),
         "rig_work": work.rig,
@@ -70,9 +79,16 @@ def history_row(
         "smallest_cell_quality": cell_quality(result.mesh).min(),
         "smallest_volume_ratio": result.points.volume_ratio.min(),
         "largest_volume_ratio": result.points.volume_ratio.max(),
+        "pressure_scatter": _scatter(problem, result),
         "residual_history": newton.residuals,
         **result.counts._asdict(),
     }
+
+
+def _scatter(problem: ScrewInstallation, result: StepResult) -> float:
+    """Return the scatter of the pressure in Pa within a diameter of the pile."""
+    near = cells_near(result.mesh, result.equilibrium.contact.position, problem.pile.width)
+    return pressure_scatter(result.points, near, problem.gradient)
 
 
 def _resultants(

@@ -101,11 +101,21 @@ def mesh_zones(pile: ScrewPile, box: Box) -> ScrewZones:
     )
 
 
+def lowest_tip(pile: ScrewPile, box: Box) -> float:
+    """Return the largest depth in m of the tip: a diameter above the bottom of the box."""
+    return box.depth - 2.0 * rim_radius(pile)
+
+
 def move_mesh(problem: ScrewInstallation, mesh: BackgroundMesh, pose: Pose) -> BackgroundMesh:
     """Return the mesh of a pile in a ``pose``, wound back by whole reset angles."""
-    reset = problem.programme.reset_angle
-    wound = reset * np.round(pose.rotation / reset)
+    wound = wound_back(problem, pose.rotation)
     return screw(mesh, pose.advance, pose.rotation, wound, problem.zones)
+
+
+def wound_back(problem: ScrewInstallation, rotation: float) -> float:
+    """Return the angle in rad by which the mesh of a pile that has turned is wound back."""
+    reset = problem.programme.reset_angle
+    return float(reset * np.round(rotation / reset))
 
 
 def _supports(mesh: BackgroundMesh, box: Box) -> np.ndarray:

@@ -19,6 +19,7 @@ from install_mpm.discretisation import Discretisation, GeostaticGradient, Scheme
 from install_mpm.equilibrium import Prescribed, StepEquilibrium, find_equilibrium
 from install_mpm.integration_points import CellFill
 from install_mpm.interface import InterfacePoints
+from install_mpm.loaded_pile import LoadedMotions
 from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
 from install_mpm.pile import PileMotion
@@ -39,6 +40,10 @@ class StepCounts(NamedTuple):
     injected_points: int
     merged_points: int
     projected_points: int
+    mass_error: float
+    """Relative change of the mass of all points by merging and splitting."""
+    volume_error: float
+    """The same of their volume."""
 
 
 class StepResult(NamedTuple):
@@ -59,15 +64,16 @@ def step(
     motion: PileMotion,
     prescribed: Prescribed,
     start: np.ndarray,
-    move_mesh: Callable[[BackgroundMesh], BackgroundMesh],
+    move_mesh: Callable[[BackgroundMesh, PileMotion], BackgroundMesh],
     model: Discretisation,
     gradient: GeostaticGradient,
+    loaded: LoadedMotions | None = None,
 ) -> StepResult:
-    """Return the state after the pile has moved by ``motion``.
+    """Return the state after the pile has moved by ``motion``, and as far as it is ``loaded``.
 
     ``start`` (n_nodes, dim) is the first trial displacement in m; ``move_mesh`` is the law by which
-    the mesh follows. Nothing that is passed in is changed, so a step that does not converge needs
-    no undo.
+    the mesh follows the motion of the pile. Nothing that is passed in is changed, so a step that
+    does not converge needs no undo.
     """
     scheme = SCHEMES[model.scheme]
     with measured("transfer"):
@@ -75,7 +81,7 @@ def step(
     interface = switch_on(interface, given.fill, model)
 
     equilibrium = find_equilibrium(
-        mesh, given.quadrature, given.fill, interface, motion, prescribed, start, model
+        mesh, given.quadrature, given.fill, interface, motion, prescribed, start, model, loaded
     )
     counts = count(points, given)
     if not equilibrium.newton.is_converged:
@@ -85,7 +91,7 @@ def step(
         carried, is_sound = scheme.take_state(
             given.points, mesh, given.fill, equilibrium, model, gradient
         )
-    moved_mesh = move_mesh(mesh)
+    moved_mesh = move_mesh(mesh, equilibrium.motion)
     with measured("location"):
         n_projected = locate(carried, moved_mesh) if is_sound else 0
     return StepResult(
@@ -108,6 +114,8 @@ def count(points: MaterialPoints, given: StepStart) -> StepCounts:
         injected_points=given.n_injected,
         merged_points=given.n_merged,
         projected_points=0,
+        mass_error=abs(given.points.mass.sum() / points.mass.sum() - 1.0),
+        volume_error=abs(given.points.volume.sum() / points.volume.sum() - 1.0),
     )
 
 

@@ -6,12 +6,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from handoff.placed_pile import PlacedFlatPile, PlacedPile, PlacedScrewPile
-from install_mpm.screw_programme import pose_at, total_travel
+from install_mpm.screw_programme import corners, is_loaded
 from workflows.case import AnyCase
 from workflows.screw_case import ScrewCase
+from workflows.screw_theory import driven
 
 if TYPE_CHECKING:
     from handoff.fe_mesh import FEMesh
+    from install_mpm.state_file import InstalledState
     from service_fe.problem import ServiceProblem
 
 
@@ -22,15 +24,27 @@ def placed_pile(case: AnyCase, tip_depth: float, rotation: float) -> PlacedPile:
     return PlacedFlatPile(case.pile, tip_depth, case.kinematics)
 
 
+def is_end_given(case: AnyCase) -> bool:
+    """Return whether the case alone tells where the installation ends, and not loads in it."""
+    return not isinstance(case, ScrewCase) or not any(map(is_loaded, case.installation.phases))
+
+
 def pile_at_end(case: AnyCase) -> PlacedPile:
-    """Return the pile at the end of the programme of its installation.
+    """Return the pile at the end of the programme of its installation, where that is given.
 
     When the rig lets go of a screw pile it springs back a little from there.
     """
     if not isinstance(case, ScrewCase):
         return placed_pile(case, case.final_tip_depth, 0.0)
-    end = pose_at(case.pile, case.installation, total_travel(case.pile, case.installation))
+    end = corners(case.pile, case.installation)[-1]
     return placed_pile(case, case.pile.embedment + end.advance, end.rotation)
+
+
+def pile_where_rig_stopped(case: ScrewCase, installed: InstalledState) -> PlacedPile:
+    """Return the pile at the end of the programme, as the installation found it."""
+    history = driven(installed.history)
+    depth = case.pile.embedment + float(history.penetration[-1])
+    return placed_pile(case, depth, float(history.rotation[-1]))
 
 
 def service_problem(case: AnyCase, placed: PlacedPile, mesh: FEMesh) -> ServiceProblem:

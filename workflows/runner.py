@@ -19,6 +19,7 @@ from workflows.manifest import (
     text_hash,
     write_manifest,
 )
+from workflows.placed import is_end_given
 from workflows.progress import Reporter
 from workflows.screw_case import ScrewCase
 from workflows.state_files import STATE_FILES, case_for, check_existing, read_checked
@@ -134,7 +135,14 @@ def stages_of(case: AnyCase) -> tuple[Stage, ...]:
     """Return the stages of a case, in order."""
     if not isinstance(case, ScrewCase):
         return STAGES
-    return SCREW_STAGES if case.service is None else SCREW_SERVICE_STAGES
+    if case.service is None:
+        return SCREW_STAGES
+    if is_end_given(case):
+        return SCREW_SERVICE_STAGES
+    return tuple(
+        replace(stage, reads=(names.INSTALLED,)) if stage.name == "wished" else stage
+        for stage in SCREW_SERVICE_STAGES
+    )
 
 
 def stage_named(name: str, case: AnyCase) -> Stage:

@@ -21,6 +21,7 @@ from install_mpm.screw_programme import (
     phase_motion,
     rim_radius,
 )
+from install_mpm.screw_setup import lowest_tip
 from service_fe.options import ServiceOptions
 from workflows.cross_checks import (
     check_ground,
@@ -66,7 +67,7 @@ class ScrewCase:
 
     @property
     def final_tip_depth(self) -> float:
-        """Largest depth in m of the pile tip."""
+        """Largest depth in m of the pile tip by the given motions."""
         return self.pile.embedment + deepest_advance(self.pile, self.installation)[1]
 
 
@@ -173,8 +174,7 @@ def _check_programme(case: ScrewCase) -> None:
             f"wall has sides of {360 / WALL_SIDES:g} deg; take a multiple of that"
         )
     highest = case.pile.embedment + deepest_advance(case.pile, programme)[0]
-    tops = [h.height + h.pitch * h.turns + h.thickness / 2.0 for h in case.pile.helices]
-    if highest <= max(tops, default=0.0):
+    if highest <= case.pile.highest_plate:
         raise CaseError(
             "installation.phases pull the pile up until its uppermost helix leaves the ground; "
             "pull less, or start deeper"
@@ -188,12 +188,11 @@ def _check_box(case: ScrewCase) -> None:
             f"box.width {box.width:g} m is less than {NARROWEST_BOX:g} diameters of the largest "
             f"plate; make it at least {NARROWEST_BOX * 2.0 * rim:g} m"
         )
-    deepest = case.final_tip_depth + 2.0 * rim
-    if deepest > box.depth:
+    if case.final_tip_depth > lowest_tip(case.pile, box):
         raise CaseError(
             f"installation.phases take the tip to {case.final_tip_depth:g} m, less than a diameter "
-            f"above the bottom of the box; make box.depth at least {deepest:g} m "
-            f"(it is {box.depth:g} m)"
+            "above the bottom of the box; make box.depth at least "
+            f"{case.final_tip_depth + 2.0 * rim:g} m (it is {box.depth:g} m)"
         )
 
 

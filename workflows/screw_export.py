@@ -16,7 +16,7 @@ import numpy as np
 
 from install_mpm.ground import GroundProfile
 from install_mpm.installation import InstallationProgress, Observer
-from install_mpm.screw_programme import total_travel
+from install_mpm.screw_programme import total_length
 from install_mpm.state_file import InstalledState
 from workflows.directory import FRAMES, SCREW_VIEWS, VIEWS, write_text
 from workflows.export import export_material_points
@@ -40,7 +40,7 @@ FRAMES_OF_A_RUN = 40
 
 def frame_interval(case: ScrewCase) -> int:
     """Return after how many load steps a frame is stored."""
-    n_steps = total_travel(case.pile, case.installation) / case.installation.step
+    n_steps = total_length(case.pile, case.installation) / case.installation.step
     return max(1, round(n_steps / FRAMES_OF_A_RUN))
 
 
@@ -53,7 +53,7 @@ def frame_writer(directory: Path, every: int) -> Observer:
     """
 
     def observe(state: InstalledState, progress: InstallationProgress) -> None:
-        is_last = float(state.history.travel[-1]) >= progress.target * (1.0 - 1e-12)
+        is_last = progress.travel >= progress.target * (1.0 - 1e-12)
         if progress.load_step % every == 0 or is_last:
             write_frame(directory, state)
 

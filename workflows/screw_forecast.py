@@ -12,7 +12,7 @@ from rich.table import Table
 from install_mpm.background_mesh import cell_quality
 from install_mpm.cells import CellType, reference_cell, sub_region_points
 from install_mpm.screw_pile_mesh import generate_screw_mesh
-from install_mpm.screw_programme import phase_travel
+from install_mpm.screw_programme import phase_length
 from install_mpm.screw_setup import mesh_zones
 from workflows.forecast import BASE_MEMORY, duration
 from workflows.screw_case import ScrewCase
@@ -51,7 +51,7 @@ def screw_forecast(case: ScrewCase) -> ScrewForecast:
     points = int((is_soil & ~is_far).sum()) * len(shares) + int((is_soil & is_far).sum()) * 4
     programme, dofs = case.installation, 3 * len(mesh.nodes)
     steps = sum(
-        math.ceil(round(phase_travel(case.pile, phase) / programme.step, 9))
+        math.ceil(round(phase_length(case.pile, programme, phase) / programme.step, 9))
         for phase in programme.phases
     )
     return ScrewForecast(

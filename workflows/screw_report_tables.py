@@ -7,6 +7,7 @@ from dataclasses import fields, is_dataclass
 import numpy as np
 
 from install_mpm.conventions import Kinematics
+from install_mpm.ground import undrained_shear_strength
 from install_mpm.screw_history import ScrewHistory
 from install_mpm.state_file import InstalledState
 from workflows.compare import QUADRATIC_ORDER
@@ -35,6 +36,7 @@ def summary_table(case: ScrewCase, installed: InstalledState) -> str:
         ["rotation", number(f"{significant(float(turns(case.pile, history)[-1]), 3)} turns")],
         ["torque", number(whole(float(history.torque[-1]), "N m"))],
         ["crowd force, downward", number(whole(float(history.crowd_force[-1]), "N"))],
+        ["advancement ratio of the last step that turned", number(_last_ratio(history))],
         *_release_rows(case, installed),
         _group("largest on the way"),
         ["torque", number(whole(float(history.torque.max()), "N m"))],
@@ -42,6 +44,8 @@ def summary_table(case: ScrewCase, installed: InstalledState) -> str:
         ["lateral force", number(whole(_largest(history.lateral_force), "N"))],
         ["overturning moment", number(whole(_largest(history.overturning_moment), "N m"))],
         *_check_rows(installed, history),
+        *_point_rows(case, installed),
+        *winding_rows(installed.history),
     ]  # fmt: skip
     return table([], rows)
 
@@ -65,9 +69,7 @@ def _release_rows(case: ScrewCase, installed: InstalledState) -> list[Row]:
 
 def _check_rows(installed: InstalledState, history: ScrewHistory) -> list[Row]:
     """Return what tells whether the figures can be trusted, over the driven steps."""
-    n_points, n_start = len(installed.material_points.mass), _points_at_start(installed)
     moved = history.travel > 0.0
-    low, high = history.smallest_volume_ratio.min(), history.largest_volume_ratio.max()
     worst = float(balance_error(history)[moved].max(initial=0.0))
     torque = float(history.far_torque_mismatch[moved].max(initial=0.0))
     force = float(history.far_force_mismatch.max())
@@ -78,10 +80,64 @@ def _check_rows(installed: InstalledState, history: ScrewHistory) -> list[Row]:
         ["error of the power balance, worst step", number(whole(worst, "", 2))],
         ["torque on the pile against the supports, worst step", number(whole(torque, "", 2))],
         ["force on the pile against the supports, worst step", number(whole(force, "", 2))],
-        ["volume ratio J of the material points", number(f"{low:.3f} to {high:.3f}")],
-        ["material points", number(f"{n_points}, {n_points / n_start:.2f} of those at the start")],
         ["cells", number(str(len(installed.background_mesh.cell_nodes)))],
     ]
+
+
+def _point_rows(case: ScrewCase, installed: InstalledState) -> list[Row]:
+    """Return what became of the material points and of their stress, over all steps."""
+    history: ScrewHistory = installed.history
+    n_points = points_per_step(installed)
+    most, n_start = int(n_points.max()), int(n_points[0])
+    low, high = history.smallest_volume_ratio.min(), history.largest_volume_ratio.max()
+    scatter = largest_known(history.pressure_scatter)
+    strength = undrained_shear_strength(case.ground, -installed.pile.tip_depth[None])[0]
+    over = f", {significant(scatter / strength, 2)} su" if scatter is not None and strength else ""
+    return [
+        _group("material points"),
+        ["at the start", number(str(n_start))],
+        ["at the end", number(f"{n_points[-1]}, {n_points[-1] / n_start:.2f} of that")],
+        ["most on the way", number(f"{most}, {most / n_start:.2f} of that")],
+        ["volume ratio J", number(f"{low:.3f} to {high:.3f}")],
+        ["mass changed by merging and splitting, worst step",
+         number(whole(largest_known(history.mass_error), "", 2))],
+        ["volume changed by them, worst step",
+         number(whole(largest_known(history.volume_error), "", 2))],
+        ["scatter of the pressure in a cell within a diameter of the pile, worst step",
+         number(whole(scatter, "Pa", 2) + over)],
+    ]  # fmt: skip
+
+
+def winding_rows(history: ScrewHistory) -> list[Row]:
+    """Return what winding the mesh back changed; nothing if it never was."""
+    n_windings = int(np.isfinite(history.winding_stress_change).sum())
+    if not n_windings:
+        return []
+    largest_energy = largest_known(history.winding_energy_change)
+    return [
+        _group(f"largest change by winding the mesh back, {n_windings} times"),
+        ["stress at the integration points",
+         number(whole(largest_known(history.winding_stress_change), "", 2))],
+        ["vertical force of that stress on the pile",
+         number(whole(largest_known(history.winding_force_change), "N", 2))],
+        ["torque of that stress on the pile",
+         number(whole(largest_known(history.winding_torque_change), "N m", 2))],
+        ["energy of the stress in the soil", number(whole(largest_energy, "J", 2))],
+    ]  # fmt: skip
+
+
+def largest_known(values: np.ndarray) -> float | None:
+    """Return the largest size of ``values`` (n,) that were recorded; None if none was."""
+    known = np.abs(values[np.isfinite(values)])
+    return float(known.max()) if len(known) else None
+
+
+def points_per_step(installed: InstalledState) -> np.ndarray:
+    """Return how many material points there were after each step, (n_steps,), the start first."""
+    history = installed.history
+    added = np.cumsum(history.injected_points - history.merged_points)
+    n_points: np.ndarray = len(installed.material_points.mass) - added[-1] + np.append(0, added)
+    return n_points
 
 
 def balance_of(history: ScrewHistory) -> float:
@@ -91,10 +147,9 @@ def balance_of(history: ScrewHistory) -> float:
     return abs(rig - float(taken.sum())) / abs(rig) if rig else 0.0
 
 
-def _points_at_start(installed: InstalledState) -> int:
-    history = installed.history
-    added = int(history.injected_points.sum() - history.merged_points.sum())
-    return len(installed.material_points.mass) - added
+def _last_ratio(history: ScrewHistory) -> str:
+    known = history.advancement_ratio[np.isfinite(history.advancement_ratio)]
+    return significant(float(known[-1]), 3) if len(known) else "–"
 
 
 def _largest(vectors: np.ndarray) -> float:

@@ -85,8 +85,8 @@ LIMITS = """
 <li>The pile starts wished in place at its first depth, in ground that nothing has disturbed. Until
 it has moved by about the thickness of a plate, torque and crowd force are those of a start, not of
 an installation.</li>
-<li>The pile is rigid and held upright by the rig; it follows the programme of the case exactly.
-</li>
+<li>The pile is rigid and held upright by the rig; it follows the programme of the case exactly:
+its motions, or its loads.</li>
 <li>No rate effects and no consolidation: set-up after the installation and softening by cyclic
 loading are not in the model, remoulding only if the soil law of the case has it.</li>
 <li>One mesh gives one answer. The edges of the plates govern the error: the pressure ahead of a

@@ -205,7 +205,7 @@ class Column:
         return step(
             points, mesh, self.interface, self.motion,
             prescribed or Prescribed(self.supports, at_rest), at_rest if start is None else start,
-            move_mesh, self.model, self.gradient,
+            lambda mesh, _: move_mesh(mesh), self.model, self.gradient,
         )  # fmt: skip
 
     def squeeze(self, mesh: BackgroundMesh, share: float):

@@ -1,5 +1,7 @@
 """Case files of screw piles: what is read, and what is refused before anything is meshed."""
 
+import re
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,8 +9,10 @@ import numpy as np
 import pytest
 
 from install_mpm.conventions import Kinematics
+from workflows import cli
 from workflows.case import case_text, parse_case, read_case
 from workflows.errors import CaseError
+from workflows.placed import is_end_given
 from workflows.runner import stage_named, stages_of
 from workflows.screw_case import ScrewCase, check_screw_case
 
@@ -64,6 +68,18 @@ REFUSED = {
     "phase without a way": (
         ["installation.phases=[{name='in', turns=1.0}]"], "does not say how far the pile goes"
     ),
+    "advance and the force that finds it": (
+        ["installation.phases=[{name='in', turns=1.0, advance='0.1 m', crowd_force='5 kN'}]"],
+        "gives both advance and crowd_force; give one of them",
+    ),
+    "turns and the torque that finds them": (
+        ["installation.phases=[{name='in', turns=1.0, advance='0.1 m', torque='5 kN m'}]"],
+        "gives both turns and torque; give one of them",
+    ),
+    "ratio without turns": (
+        ["installation.phases=[{name='in', advancement_ratio=1.0}]"],
+        "an advancement_ratio without turns",
+    ),
     "no phases": (["installation.phases=[]"], "installation.phases is empty"),
     "pulled out of the ground": (
         ["installation.phases=[{name='up', advance='-0.8 m'}]"], "leaves the ground"
@@ -83,6 +99,33 @@ def test_what_cannot_be_is_refused_in_one_sentence(name):
     with pytest.raises(CaseError, match=said) as caught:
         read_case(QUICK, overrides)
     assert "\n" not in str(caught.value)
+
+
+def test_a_given_crowd_force_is_read_and_forecast(monkeypatch, capsys):
+    path = CASES / "screwpile_crowd.toml"
+    case, _ = read_case(path)
+    screwed, rest = case.installation.phases
+    assert screwed.crowd_force == 10e3
+    assert screwed.advance is screwed.advancement_ratio is screwed.torque is None
+    assert rest.advance == 0.0
+    assert not is_end_given(case)
+    assert is_end_given(read_case(QUICK)[0])
+    monkeypatch.setattr(sys, "argv", ["screwpile", "check", str(path)])
+    with pytest.raises(SystemExit) as stopped:
+        cli.main()
+    assert stopped.value.code == 0
+    said = capsys.readouterr().out
+    assert "Screw pile in clay, given crowd force: the case is valid" in said
+    steps = int(np.ceil(2.0 * np.pi * 0.06 * 0.5 / 0.028)) + 1
+    assert re.search(rf"load steps\W+{steps}\b", said)
+
+
+def test_the_wished_pile_waits_for_an_installation_that_finds_its_depth():
+    case, _ = read_case(QUICK)
+    assert stage_named("wished", case).reads == ()
+    phases = (replace(case.installation.phases[0], advancement_ratio=None, crowd_force=10e3),)
+    loaded = replace(case, installation=replace(case.installation, phases=phases))
+    assert stage_named("wished", loaded).reads == ("installed.h5",)
 
 
 def test_angles_and_lengths_have_units():

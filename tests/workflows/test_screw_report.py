@@ -19,7 +19,7 @@ from install_mpm.installation import InstallationProgress
 from install_mpm.options import Box, ScrewMeshOptions, ScrewNumerics
 from install_mpm.screw_pile import Helix, ScrewPile, part_names
 from install_mpm.screw_pile_mesh import generate_screw_mesh
-from install_mpm.screw_programme import Phase, Pose, ScrewProgramme, pose_at
+from install_mpm.screw_programme import Phase, Pose, ScrewProgramme, phase_motion, rim_travel
 from install_mpm.screw_setup import geostatic_state, move_mesh, set_up
 from install_mpm.screw_surface import follow, pile_elements
 from install_mpm.state_file import PileState, write_installed_state
@@ -82,7 +82,9 @@ def states(case, mesh):
     found = []
     for number in range(STEPS + 1):
         travel = 0.06 * min(number, STEPS - 1)
-        pose = pose_at(case.pile, case.installation, travel)
+        whole = phase_motion(case.pile, case.installation.phases[0])
+        share = travel / rim_travel(case.pile, whole)
+        pose = Pose(share * whole.advance, share * whole.rotation)
         moved = move_mesh(problem, mesh, pose)
         interface = follow(
             state.interface, problem.model.elements, problem.normals, pose.rotation, moved,
@@ -118,7 +120,8 @@ def row_of(case, number, travel, pose):
     work = 300.0 * share
     return {
         "travel": travel, "penetration": pose.advance, "rotation": pose.rotation,
-        "release_share": float(is_released), "crowd_force": 9e3 * share,
+        "release_share": float(is_released), "phase": int(is_released), "phase_share": 1.0,
+        "crowd_force": 9e3 * share,
         "torque": share * (tangential + normal).sum(),
         "lateral_force": [1e3 * share, 0.0], "overturning_moment": [0.0, 2e3 * share],
         "part_torque": share * (tangential + normal), "part_normal_torque": share * normal,
@@ -131,6 +134,12 @@ def row_of(case, number, travel, pose):
         "empty_integration_points": 0, "injected_points": 3, "merged_points": 3,
         "projected_points": 0, "smallest_cell_quality": 0.05,
         "smallest_volume_ratio": 0.99, "largest_volume_ratio": 1.01,
+        "advancement_ratio": 0.875 if number else np.nan,
+        "mass_error": 1e-16, "volume_error": 2e-15, "pressure_scatter": 3e3 + number,
+        "winding_stress_change": 0.02 if number == 2 else np.nan,
+        "winding_force_change": -250.0 if number == 2 else np.nan,
+        "winding_torque_change": 40.0 if number == 2 else np.nan,
+        "winding_energy_change": -1.5 if number == 2 else np.nan,
         "residual_history": [1e-1, 1e-3, 1e-7],
     }  # fmt: skip
 
@@ -225,6 +234,16 @@ def test_figures_are_those_of_the_step_in_which_the_rig_stops(page, states):
     assert states[-1].history.torque[-1] == 0.0
     assert f"{torque / 1e3:.3f} kN m" in text
     assert "9.000 kN" in text
+
+
+def test_points_and_windings_are_told(page):
+    text = " ".join(" ".join(page.text).split())
+    assert "scatter of the pressure in a cell within a diameter of the pile, worst step" in text
+    assert "3.0 kPa, 0.3 su" in text
+    assert "largest change by winding the mesh back, 1 times" in text
+    assert "0.25 kN" in text
+    assert "advancement ratio of the last step that turned 0.875" in text
+    assert "mass changed by merging and splitting, worst step" in text
 
 
 def test_no_picture_is_blank(page):

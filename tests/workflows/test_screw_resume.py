@@ -73,6 +73,16 @@ name = "screw in"
 turns = 0.05
 advancement_ratio = 1.0
 
+[[installation.phases]]
+name = "by force"
+turns = 0.01
+crowd_force = "20 kN"
+
+[[installation.phases]]
+name = "rest"
+advance = "0 m"
+steps = 1
+
 [numerics]
 tolerance = 1e-6
 checkpoint_every = 1
@@ -137,6 +147,11 @@ def test_the_tiny_case_slips_and_winds_back(tiny):
     state = read_installed_state(tiny[1])
     rotation = np.abs(np.degrees(state.history.rotation))
     assert np.flatnonzero(np.diff(np.round(rotation / 15.0))).tolist() == [1]
+    history = state.history
+    assert np.flatnonzero(np.isfinite(history.winding_stress_change)).tolist() == [2]
+    assert 0.0 < history.winding_stress_change[2] < 0.5
+    assert history.crowd_force[history.phase == 1][-1] == pytest.approx(20e3, rel=1e-3)
+    assert history.penetration[-1] == history.penetration[-2]  # it rests
     traction, touches = state.interface.traction, state.interface.covered > 0.0
     shear = np.linalg.norm(traction[touches, :2], axis=1)
     strength = np.tan(np.radians(20.0)) * np.maximum(-traction[touches, 2], 0.0)

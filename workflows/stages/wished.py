@@ -2,7 +2,8 @@
 
     python -m workflows.stages.wished CASE -o DIR
 
-Reads the case; writes ``wished_in_place/service.h5``.
+Reads the case, and ``installed.h5`` if loads have found the depth; writes
+``wished_in_place/service.h5``.
 """
 
 from __future__ import annotations
@@ -10,16 +11,24 @@ from __future__ import annotations
 from pathlib import Path
 
 from handoff.hand_over import wished_in_place
+from handoff.placed_pile import PlacedPile
 from handoff.surface import level_surface
 from install_mpm.ground import boundary_depths
 from service_fe.result_file import write_service_result
 from service_fe.solve import run as run_programmes
 from workflows.case import AnyCase, case_text
-from workflows.directory import WISHED, WISHED_SERVICE
+from workflows.directory import INSTALLED, WISHED, WISHED_SERVICE
 from workflows.manifest import created_by
-from workflows.placed import pile_at_end, service_problem
+from workflows.placed import (
+    is_end_given,
+    pile_at_end,
+    pile_where_rig_stopped,
+    service_problem,
+)
 from workflows.progress import Advance, no_progress, service_observer
+from workflows.screw_case import ScrewCase
 from workflows.stages.serve import settled_notes
+from workflows.state_files import read_checked
 
 
 def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[str]:
@@ -27,6 +36,8 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
 
     Raises
     ------
+    StateFileError, DirectoryError
+        If the end of the installation is not given, and ``installed.h5`` is missing or damaged.
     MeshError, EquilibrationError
         If the ground cannot be meshed or brought to equilibrium.
     ServiceError
@@ -34,7 +45,7 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     """
     assert case.handoff is not None
     assert case.service is not None
-    placed = pile_at_end(case)
+    placed = _placed(case, directory)
     mesh = placed.mesh(case.box, case.handoff, level_surface(), boundary_depths(case.ground))
     problem = service_problem(case, placed, mesh)
     result = run_programmes(
@@ -48,6 +59,13 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     (directory / WISHED).mkdir(exist_ok=True)
     write_service_result(directory / WISHED_SERVICE, result, created_by())
     return settled_notes(result)
+
+
+def _placed(case: AnyCase, directory: Path) -> PlacedPile:
+    if is_end_given(case):
+        return pile_at_end(case)
+    assert isinstance(case, ScrewCase)
+    return pile_where_rig_stopped(case, read_checked(directory, INSTALLED, case))
 
 
 if __name__ == "__main__":

@@ -118,8 +118,8 @@ def advance(
     """
     motion = motion or PileMotion(np.zeros(body.mesh.nodes.shape[1]))
     result = step(
-        body.points, body.mesh, body.interface, motion, prescribed, body.start, move_mesh,
-        body.model, body.gradient,
+        body.points, body.mesh, body.interface, motion, prescribed, body.start,
+        lambda mesh, _: move_mesh(mesh), body.model, body.gradient,
     )  # fmt: skip
     if not result.is_converged:
         residuals = " ".join(f"{value:.1e}" for value in result.equilibrium.newton.residuals)

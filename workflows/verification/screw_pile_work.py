@@ -23,10 +23,11 @@ from install_mpm.equilibrium import youngs_modulus
 from install_mpm.ground import Ground
 from install_mpm.integration_points import IntegrationPoints
 from install_mpm.options import Box, Numerics, ScrewMeshOptions
-from install_mpm.screw_installation import accept, motion_to, step_to, travelled
+from install_mpm.screw_installation import accept, next_step, step_to
+from install_mpm.screw_path import START, Target
 from install_mpm.screw_pile import Helix, ScrewPile
 from install_mpm.screw_pile_mesh import generate_screw_mesh
-from install_mpm.screw_programme import Phase, Pose, ScrewProgramme, phase_travel, pose_at
+from install_mpm.screw_programme import Phase, ScrewProgramme, phase_motion, rim_travel
 from install_mpm.screw_record import Work, work_of_step
 from install_mpm.screw_setup import ScrewInstallation, geostatic_state, set_up
 from install_mpm.state_file import InstalledState
@@ -77,35 +78,31 @@ def screw_pile_work(
     problem, state = _problem((D, d, p, t), su, alpha, AR, np.radians(degrees_per_step))
     end = steps * problem.programme.step
     works, splits, residuals = [], [], []
-    pose, travel = Pose(0.0, 0.0), 0.0
-    result = step_to(problem, state, pose, 0.0)
+    target = START
+    result = step_to(problem, state, target)
     while True:
-        works.append(work_of_step(state, result.equilibrium, motion_to(state, pose)))
+        works.append(work_of_step(state, result.equilibrium))
         splits.append(soil_work(problem, state, result))
         residuals.append(tuple(result.equilibrium.newton.residuals))
-        state = accept(problem, state, result, pose, travel)
-        if travelled(state) > end * (1.0 - 1e-9):
+        state = accept(problem, state, result, target)
+        if state.history.travel[-1] > end * (1.0 - 1e-9):
             return _outcome(works[1:], splits[1:], residuals)  # the first step moves nothing
-        state, result, pose, travel = _advance(problem, state, end)
+        state, result, target = _advance(problem, state)
 
 
 def _advance(
-    problem: ScrewInstallation, state: InstalledState, end: float
-) -> tuple[InstalledState, StepResult, Pose, float]:
-    """Return the next step towards the travel ``end`` in m, halved until it converges.
-
-    And the pose and the travel at its end.
-    """
+    problem: ScrewInstallation, state: InstalledState
+) -> tuple[InstalledState, StepResult, Target]:
+    """Return the next step, halved until it converges, and where it goes."""
     while True:
-        size = min(float(state.control.step), end - travelled(state))
-        travel = travelled(state) + size
-        pose = pose_at(problem.pile, problem.programme, travel)
-        result = step_to(problem, state, pose, size / float(state.control.step))
+        target = next_step(problem, state)
+        assert target is not None  # the turn of the programme is longer than all steps
+        result = step_to(problem, state, target)
         if result.is_converged:
-            return state, result, pose, travel
+            return state, result, target
         if int(state.control.cuts) >= problem.numerics.max_cuts:
             raise ProblemNotSolvedError("screw pile: a step does not converge")
-        state = state._replace(control=cut_control(state.control, size))
+        state = state._replace(control=cut_control(state.control, target.way))
 
 
 def _outcome(
@@ -160,7 +157,7 @@ def _problem(
     soil, stiffness = VonMises(modulus, POISSON, strength), INTERFACE_STIFFNESS * modulus
     law = CoulombInterface(stiffness, 0.1 * stiffness, adhesion_factor=alpha)
     turn = Phase("in", 1.0, ratio)
-    step = phase_travel(pile, turn) * angle / (2.0 * np.pi)
+    step = rim_travel(pile, phase_motion(pile, turn)) * angle / (2.0 * np.pi)
     mesh = generate_screw_mesh(pile, box, sizes)
     ground, programme = Ground(UNIT_WEIGHT, 1.0, soil), ScrewProgramme((turn,), step)
     problem = set_up(ground, pile, law, box, programme, NUMERICS, mesh)
