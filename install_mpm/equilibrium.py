@@ -12,6 +12,7 @@ from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.constitutive.pressure_elasticity import bulk_modulus
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation
+from install_mpm.far_field import far_field_mismatch
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
 from install_mpm.interface import (
     Contact,
@@ -224,7 +225,14 @@ class StepSystem:
         supports = out_of_balance[self.is_prescribed.ravel()]
         reference = sum(map(np.linalg.norm, (self.external, supports, interface)))
         residual = np.where(self.is_free.ravel(), out_of_balance, 0.0)
-        return Evaluation(residual, values, float(reference) or 1.0, is_admissible)
+        mismatch = self._mismatch(nodal) if self.model.compares_resultants else 0.0
+        return Evaluation(residual, values, float(reference) or 1.0, is_admissible, mismatch)
+
+    def _mismatch(self, nodal: np.ndarray) -> float:
+        """Return the larger relative mismatch of force and moment at the last evaluation."""
+        reaction = np.where(self.is_prescribed, self.out_of_balance, 0.0)
+        end = self.mesh.nodes + nodal
+        return max(far_field_mismatch(self.contact(), end, reaction + self.external))
 
     def contact(self) -> Contact:
         """Return the forces between pile and soil at the last evaluation."""

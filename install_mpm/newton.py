@@ -41,6 +41,8 @@ class Evaluation(NamedTuple):
     """Force in N that the residual is measured against."""
     is_admissible: bool
     """False if a cell collapsed or a law failed."""
+    mismatch: float = 0.0
+    """How far resultants are from balance, held to the same tolerance; 0: they are not compared."""
 
 
 class NewtonResult(NamedTuple):
@@ -50,6 +52,8 @@ class NewtonResult(NamedTuple):
     is_converged: bool
     residuals: np.ndarray
     """Relative out-of-balance force, the start first."""
+    mismatch: float = 0.0
+    """Of the resultants at the solution, see ``Evaluation``."""
 
 
 def solve_newton(
@@ -61,8 +65,8 @@ def solve_newton(
 ) -> NewtonResult:
     """Return the solution of ``evaluate(x).residual = 0`` from ``start`` (n_dofs,).
 
-    Convergence means |residual| <= tolerance * reference; at least one correction is always made,
-    unless the start is exact to round-off.
+    Convergence means |residual| <= tolerance * reference, and that resultants balance to the same
+    tolerance; at least one correction is always made, unless the start is exact to round-off.
     """
     x = start
     state = evaluate(x)
@@ -70,19 +74,20 @@ def solve_newton(
         return NewtonResult(x, False, np.array([np.inf]))
     residuals = [_relative(state)]
     for iteration in range(max_iterations):
-        if residuals[-1] <= (tolerance if iteration else ROUND_OFF):
-            return NewtonResult(x, True, np.array(residuals))
+        small_enough = tolerance if iteration else ROUND_OFF
+        if residuals[-1] <= small_enough and state.mismatch <= tolerance:
+            return NewtonResult(x, True, np.array(residuals), state.mismatch)
         try:
             with measured("linear solves"):
                 correction = solve(state.tangent, -state.residual)
         except SingularMatrixError:
-            return NewtonResult(x, False, np.array(residuals))
+            return NewtonResult(x, False, np.array(residuals), state.mismatch)
         x, state = _backtrack(evaluate, x, correction, state)
         if not state.is_admissible:
             break
         residuals.append(_relative(state))
-    is_converged = state.is_admissible and residuals[-1] <= tolerance
-    return NewtonResult(x, is_converged, np.array(residuals))
+    is_converged = state.is_admissible and max(residuals[-1], state.mismatch) <= tolerance
+    return NewtonResult(x, is_converged, np.array(residuals), state.mismatch)
 
 
 def _relative(state: Evaluation) -> float:

@@ -194,12 +194,13 @@ def motion_to(state: InstalledState, pose: Pose) -> PileMotion:
 
 def _why(state: InstalledState, pose: Pose, result: StepResult) -> str:
     """Return the sentence for a step that does not converge."""
+    newton = result.equilibrium.newton
     return (
         f"installation: the step to a rotation of {np.degrees(pose.rotation):.2f} deg and a "
         f"penetration of {pose.advance:.4f} m does not converge after "
         f"{int(state.control.cuts)} halvings (last relative residual "
-        f"{result.equilibrium.newton.residuals[-1]:.1e}); use a smaller installation.step "
-        "or a finer background mesh"
+        f"{newton.residuals[-1]:.1e}, resultants on the pile off by {newton.mismatch:.1e}); use a "
+        "smaller installation.step or a finer background mesh"
     )
 
 

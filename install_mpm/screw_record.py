@@ -8,6 +8,7 @@ import numpy as np
 
 from install_mpm.background_mesh import cell_quality
 from install_mpm.equilibrium import StepEquilibrium
+from install_mpm.far_field import far_field_mismatch
 from install_mpm.newton import convergence_order
 from install_mpm.pile import PileMotion, rigid_displacement
 from install_mpm.screw_pile import Helix, ScrewPile, part_names
@@ -111,18 +112,10 @@ def rig_loads(pile: ScrewPile, equilibrium: StepEquilibrium, pose: Pose) -> tupl
 
 def _far_field(state: InstalledState, equilibrium: StepEquilibrium) -> dict[str, object]:
     """Return how far the resultants on the pile are from what supports and weight say."""
-    contact, supports = equilibrium.contact, equilibrium.reaction
     end = state.background_mesh.nodes + equilibrium.displacement
-    force = contact.force.sum(axis=0)
-    loads = (supports.sum(axis=0), equilibrium.external_force.sum(axis=0))
-    largest = max(map(np.linalg.norm, (force, *loads)))
-    torque = np.cross(contact.position, contact.force)[:, 2].sum()
-    far_torque = np.cross(end, supports)[:, 2].sum()
-    return {
-        "far_force_mismatch": np.linalg.norm(force - sum(loads)) / (largest or 1.0),
-        "far_torque_mismatch": abs(torque - far_torque)
-        / (max(abs(torque), abs(far_torque)) or 1.0),
-    }
+    loads = equilibrium.reaction + equilibrium.external_force
+    mismatch = far_field_mismatch(equilibrium.contact, end, loads)
+    return {"far_force_mismatch": mismatch.force, "far_moment_mismatch": mismatch.moment}
 
 
 def weight_of(pile: ScrewPile, tip_depth: float) -> float:

@@ -69,14 +69,14 @@ def _check_rows(installed: InstalledState, history: ScrewHistory) -> list[Row]:
     moved = history.travel > 0.0
     low, high = history.smallest_volume_ratio.min(), history.largest_volume_ratio.max()
     worst = float(balance_error(history)[moved].max(initial=0.0))
-    torque = float(history.far_torque_mismatch[moved].max(initial=0.0))
+    moment = float(history.far_moment_mismatch.max())
     force = float(history.far_force_mismatch.max())
     return [
         _group("checks"),
         ["work of the rig", number(whole(float(history.rig_work.sum()), "J"))],
         ["error of the power balance, all steps", number(whole(balance_of(history), "", 2))],
         ["error of the power balance, worst step", number(whole(worst, "", 2))],
-        ["torque on the pile against the supports, worst step", number(whole(torque, "", 2))],
+        ["moment on the pile against the supports, worst step", number(whole(moment, "", 2))],
         ["force on the pile against the supports, worst step", number(whole(force, "", 2))],
         ["volume ratio J of the material points", number(f"{low:.3f} to {high:.3f}")],
         ["material points", number(f"{n_points}, {n_points / n_start:.2f} of those at the start")],

@@ -123,7 +123,7 @@ def row_of(case, number, travel, pose):
         "lateral_force": [1e3 * share, 0.0], "overturning_moment": [0.0, 2e3 * share],
         "part_torque": share * (tangential + normal), "part_normal_torque": share * normal,
         "part_force": np.zeros(n_parts),
-        "far_force_mismatch": 1e-8, "far_torque_mismatch": 1e-7,
+        "far_force_mismatch": 1e-8, "far_moment_mismatch": 1e-7,
         "rig_work": work, "interface_work": 0.6 * work, "soil_work": 0.5 * work,
         "weight_work": 0.1 * work * (1.0 + 1e-3),
         "iterations": 4, "residual": 1e-7, "convergence_order": 1.9 if number else np.nan,
