@@ -11,7 +11,7 @@ from install_mpm.equilibrium import StepEquilibrium
 from install_mpm.far_field import far_field_mismatch
 from install_mpm.newton import convergence_order
 from install_mpm.pile import PileMotion, rigid_displacement
-from install_mpm.screw_pile import Helix, ScrewPile, part_names
+from install_mpm.screw_pile import Helix, ScrewPile, edge_thickness, part_names
 from install_mpm.screw_programme import Pose
 from install_mpm.screw_setup import ScrewInstallation
 from install_mpm.state_file import InstalledState
@@ -125,9 +125,17 @@ def weight_of(pile: ScrewPile, tip_depth: float) -> float:
 
 
 def plate_volume(pile: ScrewPile, helix: Helix) -> float:
-    """Return the volume in m^3 of a plate outside the shaft."""
+    """Return the volume in m^3 of a plate outside the shaft.
+
+    That of rounded edges is a series in their thickness, short of terms of fourth order.
+    """
     annulus = (helix.radius**2 - pile.shaft_radius**2) / 2.0
     thinned = 0.0
     if helix.edge_thickness is not None:
         thinned = (helix.thickness - helix.edge_thickness) * helix.taper_angle
-    return float(annulus * (helix.thickness * helix.winding - thinned))
+    noses = 0.0
+    if helix.edges == "rounded":
+        half, product = edge_thickness(helix) / 2.0, pile.shaft_radius * helix.radius
+        width = helix.radius - pile.shaft_radius  # between the cylinders of shaft and rim
+        noses = np.pi * half**2 * width * (1.0 + half**2 / (8.0 * product))
+    return float(annulus * (helix.thickness * helix.winding - thinned) + noses)
