@@ -175,7 +175,7 @@ def _distance_to_helix(
 
 
 def _distance_to_edge(pile: ScrewPile, helix: Helix, points: np.ndarray, end: int) -> np.ndarray:
-    """Return the distance (n,) in m from the end of a plate: a plane through the axis, or a nose."""
+    """Return the distance (n,) in m from the end of a plate: a plane at the axis, or a nose."""
     edge, half = edge_place(pile, helix, points, end), edge_thickness(helix) / 2.0
     radius = np.linalg.norm(points[:, :2], axis=1)
     distance: np.ndarray

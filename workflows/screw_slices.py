@@ -9,8 +9,8 @@ from scipy.spatial import cKDTree
 
 from install_mpm.ground import GroundProfile, geostatic_stress
 from install_mpm.screw_pile import ScrewPile, thickness_at, winding_angle
-from install_mpm.screw_shape import distance_to_noses
 from install_mpm.screw_programme import Pose, rim_radius
+from install_mpm.screw_shape import distance_to_noses
 from workflows.report_style import INK, PILE
 from workflows.screw_frames import PointCloud
 

@@ -64,13 +64,14 @@ def test_boundary_is_closed_and_its_parts_have_their_areas(mesh):
 
 
 def test_rounded_edges_are_meshed_as_well():
+    """Two chords are 10 % short of a half circle."""
     rounded = replace(PILE, helices=(replace(PILE.helices[0], edges="rounded"),))
     mesh = make_screw_mesh(rounded, ANGLE, BOX, OPTIONS, level_surface())
     areas = vector_areas(mesh)
     np.testing.assert_allclose(areas.sum(axis=0), 0.0, atol=1e-10)
     for edge in first_part(0) + np.array([3, 4]):
         size = np.linalg.norm(areas[mesh.facet_tag == edge], axis=1).sum()
-        assert size == pytest.approx(np.pi * 0.06 * 0.25, rel=0.15)  # two chords are 10 % short of it
+        assert size == pytest.approx(np.pi * 0.06 * 0.25, rel=0.15)
 
 
 def test_facets_of_a_part_face_as_its_exact_normals_do(mesh):

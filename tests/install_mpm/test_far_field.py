@@ -18,7 +18,7 @@ def balanced(rng):
         operator[axis, :, axis] = 1.0
         operator[3 + axis] = np.cross(unit, nodes)
     flat = operator.reshape(6, -1)
-    loads += np.linalg.lstsq(flat, wanted - flat @ loads.ravel())[0].reshape(40, 3)
+    loads += np.linalg.lstsq(flat, wanted - flat @ loads.ravel(), rcond=None)[0].reshape(40, 3)
     return Contact(position, force, np.zeros_like(force)), nodes, loads
 
 

@@ -329,6 +329,16 @@ def test_distance_from_the_pile_is_zero_on_its_surface(case, states):
     assert distance_from_pile(case.pile, pose, in_plate) == pytest.approx(-0.06)
 
 
+def test_distance_from_rounded_edges(case):
+    helix = replace(HELIX, edges="rounded")
+    pile = replace(case.pile, helices=(helix,))
+    sign = np.array([1.0, -pile.sense, 1.0])  # a right-handed plate winds towards +y
+    ahead = np.array([[0.4, y, pile.leading_level(helix)] for y in (0.02, 0.1)]) * sign
+    ahead[:, 2] -= helix.pitch * np.array([0.02, 0.1]) / (2.0 * np.pi * 0.4)
+    found = distance_from_pile(pile, Pose(0.0, 0.0), ahead)
+    np.testing.assert_allclose(found, [-0.04, 0.04], atol=1e-12)
+
+
 def pose_of(state):
     return Pose(float(state.pile.penetration), float(state.pile.rotation))
 
