@@ -24,10 +24,11 @@ from install_mpm.conventions import Kinematics, rotation_matrix
 from install_mpm.ground import GroundProfile
 from install_mpm.options import Box
 from install_mpm.pile import Pile, PilePart, buried_weight, surface_normals
-from install_mpm.screw_pile import ScrewPile, distance_to_plates, part_names
-from install_mpm.screw_pile import surface_normals as screw_normals
+from install_mpm.screw_pile import ScrewPile, part_names
 from install_mpm.screw_programme import rim_radius
 from install_mpm.screw_record import weight_of
+from install_mpm.screw_shape import distance_to_plates
+from install_mpm.screw_shape import surface_normals as screw_normals
 from install_mpm.state_file import InstalledState
 
 

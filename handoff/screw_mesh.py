@@ -23,12 +23,15 @@ from install_mpm.background_mesh import (
 )
 from install_mpm.conventions import rotation_matrix
 from install_mpm.options import Box, ScrewMeshOptions
-from install_mpm.screw_pile import ScrewPile
+from install_mpm.screw_pile import ScrewPile, edge_thickness
 from install_mpm.screw_pile_mesh import mesh_around_pile
 from install_mpm.screw_surface import boundary_parts
 
 LARGEST_ON_PLATE = 2.5
 """Largest cell size at the plates over their thickness; coarser meshes fail or have flat cells."""
+
+LARGEST_ON_NOSE = 2.0
+"""The same of rounded edges, over the thickness there."""
 
 
 def make_screw_mesh(
@@ -72,7 +75,12 @@ def make_screw_mesh(
 
 def largest_size(pile: ScrewPile) -> float:
     """Return the largest ``size_at_pile`` in m that shaft and plates can be meshed with."""
-    limits = [LARGEST_ON_PLATE * helix.thickness for helix in pile.helices]
+    limits = [
+        LARGEST_ON_NOSE * edge_thickness(helix)
+        if helix.edges == "rounded"
+        else LARGEST_ON_PLATE * helix.thickness
+        for helix in pile.helices
+    ]
     return float(min([pile.shaft_radius, *limits]))
 
 

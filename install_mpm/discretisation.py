@@ -50,6 +50,9 @@ class Discretisation(NamedTuple):
     By default an interior cell weighs its volume times the density, so that undisturbed ground
     stays in equilibrium however the points lie in the cells.
     """
+    compares_resultants: bool = False
+    """In space: a step has converged only if force and moment on the pile are those of supports and
+    loads, to the tolerance."""
     gravity: float = GRAVITY
     """Gravitational acceleration in m/s^2, or in the units of everything else."""
 

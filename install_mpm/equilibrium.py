@@ -13,6 +13,8 @@ from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.constitutive.pressure_elasticity import bulk_modulus
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation
+from install_mpm.far_field import far_field_mismatch
+from install_mpm.hanging_soil import cells_around_hanging_soil
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
 from install_mpm.interface import (
     Contact,
@@ -197,6 +199,17 @@ def _elastic_solution(system: StepSystem, first: np.ndarray) -> np.ndarray:
     return first + system.solve(state.tangent, -state.residual)
 
 
+def _softly_held(
+    mesh: BackgroundMesh, points: IntegrationPoints, fill: CellFill, options: CellOptions
+) -> np.ndarray:
+    """Return the cells (n_cells,) bool without soil that the soft stress holds."""
+    has_soft_stress = (options.soft_stiffness > 0.0) & (np.diff(points.cell_start) > 0)
+    if not has_soft_stress.any():
+        return has_soft_stress
+    held: np.ndarray = cells_around_hanging_soil(mesh, fill.is_active) & has_soft_stress
+    return held
+
+
 class StepSystem:
     """Work arrays of a step, filled by every evaluation."""
 
@@ -214,7 +227,7 @@ class StepSystem:
         n_nodes, dim = mesh.nodes.shape
         n_cells, n_cell_nodes = mesh.cell_nodes.shape
         n_elements, n_element_nodes = model.elements.nodes.shape
-        self.mesh, self.points, self.fill, self.model = mesh, points, fill, model
+        self.mesh, self.points, self.model = mesh, points, model
         self.materials = model.materials
         self.interface, self.is_prescribed = interface, prescribed.is_prescribed
         self.options = cell_options(fill, points, model)
@@ -236,8 +249,9 @@ class StepSystem:
         body_force(mesh.cell_nodes, points, model.gravity, self.external)
         if prescribed.force is not None:
             self.external += prescribed.force
+        self.takes_part = fill.is_active | _softly_held(mesh, points, fill, self.options)
         is_held = np.zeros(n_nodes, dtype=bool)
-        is_held[mesh.cell_nodes[fill.is_active]] = True
+        is_held[mesh.cell_nodes[self.takes_part]] = True
         self.is_free = is_held[:, None] & ~prescribed.is_prescribed
 
     def evaluate(self, unknowns: np.ndarray) -> Evaluation:
@@ -273,8 +287,15 @@ class StepSystem:
         supports = out_of_balance[self.is_prescribed.ravel()]
         reference = sum(map(np.linalg.norm, (self.external, supports, interface)))
         residual = np.where(self.is_free.ravel(), out_of_balance, 0.0)
-        evaluation = Evaluation(residual, values, float(reference) or 1.0, is_admissible)
+        mismatch = self._mismatch(nodal) if self.model.compares_resultants else 0.0
+        evaluation = Evaluation(residual, values, float(reference) or 1.0, is_admissible, mismatch)
         return evaluation if self.loaded is None else self._bordered(evaluation, nodal, sizes)
+
+    def _mismatch(self, nodal: np.ndarray) -> float:
+        """Return the larger relative mismatch of force and moment at the last evaluation."""
+        reaction = np.where(self.is_prescribed, self.out_of_balance, 0.0)
+        end = self.mesh.nodes + nodal
+        return max(far_field_mismatch(self.contact(), end, reaction + self.external))
 
     def _move_pile(self, sizes: np.ndarray) -> None:
         """Move the pile as given, and by ``sizes`` (m,) in m of its loaded motions."""
@@ -311,7 +332,7 @@ class StepSystem:
     def _evaluate_blocks(self, nodal: np.ndarray) -> None:
         """Fill force and stiffness of all cells and interface elements."""
         evaluate_cells(
-            self.mesh.cell_nodes, self.fill.is_active, self.points, nodal, self.materials,
+            self.mesh.cell_nodes, self.takes_part, self.points, nodal, self.materials,
             self.options, self.cell_force, self.cell_stiffness, self.trial,
         )  # fmt: skip
         self.soil_displacement = soil_displacement(self.model.elements, nodal)

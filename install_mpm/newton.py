@@ -48,6 +48,8 @@ class Evaluation(NamedTuple):
     """Force in N that the residual is measured against."""
     is_admissible: bool
     """False if a cell collapsed or a law failed."""
+    mismatch: float = 0.0
+    """How far resultants are from balance, held to the same tolerance; 0: they are not compared."""
 
 
 class NewtonResult(NamedTuple):
@@ -57,6 +59,8 @@ class NewtonResult(NamedTuple):
     is_converged: bool
     residuals: np.ndarray
     """Relative out-of-balance force, the start first."""
+    mismatch: float = 0.0
+    """Of the resultants at the solution, see ``Evaluation``."""
 
 
 def solve_newton(
@@ -71,10 +75,11 @@ def solve_newton(
 ) -> NewtonResult:
     """Return the solution of ``evaluate(x).residual = 0`` from ``start`` (n_dofs,).
 
-    Convergence means |residual| <= tolerance * reference; at least one correction is always made,
-    unless the start is exact to round-off.  No dof is corrected by more than
-    ``largest_correction``, one number or (n_dofs,), in an iteration.  An iteration in which all
-    trials increase the residual goes on from the best of them, or ends if it ``gives_up``.
+    Convergence means |residual| <= tolerance * reference, and that resultants balance to the same
+    tolerance; at least one correction is always made, unless the start is exact to round-off.  No
+    dof is corrected by more than ``largest_correction``, one number or (n_dofs,), in an iteration.
+    An iteration in which all trials increase the residual goes on from the best of them, or ends if
+    it ``gives_up``.
     """
     x = start
     state = evaluate(x)
@@ -82,13 +87,14 @@ def solve_newton(
         return NewtonResult(x, False, np.array([np.inf]))
     residuals = [_relative(state)]
     for iteration in range(max_iterations):
-        if residuals[-1] <= (tolerance if iteration else ROUND_OFF):
-            return NewtonResult(x, True, np.array(residuals))
+        small_enough = tolerance if iteration else ROUND_OFF
+        if residuals[-1] <= small_enough and state.mismatch <= tolerance:
+            return NewtonResult(x, True, np.array(residuals), state.mismatch)
         try:
             with measured("linear solves"):
                 correction = solve(state.tangent, -state.residual)
         except SingularMatrixError:
-            return NewtonResult(x, False, np.array(residuals))
+            return NewtonResult(x, False, np.array(residuals), state.mismatch)
         correction = np.clip(correction, -largest_correction, largest_correction)
         x, state = _backtrack(evaluate, x, correction, state)
         if not state.is_admissible:
@@ -96,8 +102,8 @@ def solve_newton(
         residuals.append(_relative(state))
         if gives_up and residuals[-1] > GROWTH_ALLOWED * residuals[-2]:
             break
-    is_converged = state.is_admissible and residuals[-1] <= tolerance
-    return NewtonResult(x, is_converged, np.array(residuals))
+    is_converged = state.is_admissible and max(residuals[-1], state.mismatch) <= tolerance
+    return NewtonResult(x, is_converged, np.array(residuals), state.mismatch)
 
 
 def _relative(state: Evaluation) -> float:

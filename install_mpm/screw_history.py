@@ -64,11 +64,11 @@ class ScrewHistory(NamedTuple):
     ]
     far_force_mismatch: Annotated[
         np.ndarray,
-        _per_step("", "force on the pile less supports and weight, over the largest of them"),
+        _per_step("", "force on the pile less supports and weight, over the sum of its parts"),
     ]
-    far_torque_mismatch: Annotated[
+    far_moment_mismatch: Annotated[
         np.ndarray,
-        _per_step("", "torque on the pile less that of the supports, over the larger"),
+        _per_step("", "same of the moment, over the sum of force times distance from the axis"),
     ]
     rig_work: Annotated[np.ndarray, _per_step("J", "work of torque and vertical force in the step")]
     interface_work: Annotated[

@@ -178,14 +178,14 @@ def step_to(problem: ScrewInstallation, state: InstalledState, target: Target) -
 
 def _why(state: InstalledState, target: Target, result: StepResult) -> str:
     """Return the sentence for a step that does not converge."""
-    pose = target.pose
+    pose, newton = target.pose, result.equilibrium.newton
     loads = "loads that the ground can carry, " if target.is_loaded else ""
     return (
         f"installation: the step to a rotation of {np.degrees(pose.rotation):.2f} deg and a "
         f"penetration of {pose.advance:.4f} m does not converge after "
         f"{int(state.control.cuts)} halvings (last relative residual "
-        f"{result.equilibrium.newton.residuals[-1]:.1e}); use {loads}a smaller installation.step "
-        "or a finer background mesh"
+        f"{newton.residuals[-1]:.1e}, resultants on the pile off by {newton.mismatch:.1e}); use "
+        f"{loads}a smaller installation.step or a finer background mesh"
     )
 
 

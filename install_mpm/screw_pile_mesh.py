@@ -14,7 +14,7 @@ import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
 from install_mpm.options import Box, ScrewMeshOptions
-from install_mpm.screw_pile import Helix, ScrewPile, thickness_at
+from install_mpm.screw_pile import Helix, ScrewPile, edge_thickness, thickness_at
 
 WALL_SIDES = 24
 """Sides of the outer wall: the mesh fits into it again after a turn of 15 degrees."""
@@ -24,6 +24,9 @@ SECTIONS_PER_TURN = 16
 
 LEAST_SECTIONS = 7
 """Sections of a piece of a plate, however short: fewer are too far off the circle of the rim."""
+
+NOSE_SECTIONS = 8
+"""Sections across a rounded edge that its nose is lofted through, from the inside to the rim."""
 
 INSIDE_SHARE = 0.6
 """Of the shaft radius: where the sections of a plate begin, inside the shaft."""
@@ -113,7 +116,7 @@ def _draw_pile(pile: ScrewPile, top: float) -> list[tuple[int, int]]:
 
 
 def _draw_plate(pile: ScrewPile, helix: Helix) -> list[tuple[int, int]]:
-    """Return the volumes of a plate: one, or three if it thins towards its edges.
+    """Return the volumes of a plate: one, or three if it thins towards its edges; and its noses.
 
     A loft is a spline: it would be off the plate on both sides of a bend in the thickness.
     """
@@ -121,7 +124,10 @@ def _draw_plate(pile: ScrewPile, helix: Helix) -> list[tuple[int, int]]:
     if helix.edge_thickness is not None:
         bends = [helix.taper_angle, helix.winding - helix.taper_angle]
     ends = np.unique([0.0, *bends, helix.winding])
-    return [_draw_piece(pile, helix, start, end) for start, end in pairwise(ends)]
+    pieces = [_draw_piece(pile, helix, start, end) for start, end in pairwise(ends)]
+    if helix.edges == "rounded":
+        pieces += [_draw_nose(pile, helix, end) for end in (-1, 1)]
+    return pieces
 
 
 def _draw_piece(pile: ScrewPile, helix: Helix, start: float, end: float) -> tuple[int, int]:
@@ -146,6 +152,46 @@ def _draw_piece(pile: ScrewPile, helix: Helix, start: float, end: float) -> tupl
         wires.append(occ.addWire(lines))
     volumes = occ.addThruSections(wires, makeSolid=True, makeRuled=False)
     return next((dim, tag) for dim, tag in volumes if dim == 3)
+
+
+def _draw_nose(pile: ScrewPile, helix: Helix, end: int) -> tuple[int, int]:
+    """Return the volume of the rounded leading (``end`` -1) or trailing (+1) edge of a plate.
+
+    Its sections square to the edge are half circles, inclined with the climb of the plate there.
+    They are lofted, and cut off at the radius of the rim.
+    """
+    occ = gmsh.model.occ
+    winding = helix.winding if end > 0 else 0.0
+    polar, half = pile.sense * winding, edge_thickness(helix) / 2.0
+    level = pile.leading_level(helix) + helix.pitch * winding / (2.0 * np.pi)
+    inside = INSIDE_SHARE * pile.shaft_radius
+    wires = []
+    for along in np.linspace(inside, helix.radius + half / 2.0, NOSE_SECTIONS):
+        climb = helix.pitch / (2.0 * np.pi * along)
+        corners = [
+            occ.addPoint(
+                along * np.cos(polar) - pile.sense * end * ahead * half * np.sin(polar),
+                along * np.sin(polar) + pile.sense * end * ahead * half * np.cos(polar),
+                level + half * (rise + climb * end * ahead),
+            )
+            for ahead, rise in ((0.0, -1.0), (1.0, -1.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+        ]
+        quarters = [_quarter(corners[:3]), _quarter(corners[2:])]
+        wires.append(occ.addWire([*quarters, occ.addLine(corners[4], corners[0])]))
+    nose = occ.addThruSections(wires, makeSolid=True, makeRuled=False)
+    height = 2.0 * (half + helix.pitch)
+    rim = occ.addCylinder(0.0, 0.0, level - height, 0.0, 0.0, 2.0 * height, helix.radius)
+    trimmed, _ = occ.intersect([entry for entry in nose if entry[0] == 3], [(3, rim)])
+    return next((dim, tag) for dim, tag in trimmed if dim == 3)
+
+
+def _quarter(corners: Sequence[int]) -> int:
+    """Return a quarter of an ellipse: a rational curve with three control points."""
+    weights = [1.0, np.sqrt(0.5), 1.0]
+    curve: int = gmsh.model.occ.addBSpline(
+        corners, degree=2, weights=weights, knots=[0.0, 1.0], multiplicities=[3, 3]
+    )
+    return curve
 
 
 def _set_sizes(pile: ScrewPile, box: Box, options: ScrewMeshOptions) -> None:

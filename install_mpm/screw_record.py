@@ -8,10 +8,11 @@ import numpy as np
 
 from install_mpm.background_mesh import cell_quality
 from install_mpm.equilibrium import StepEquilibrium
+from install_mpm.far_field import far_field_mismatch
 from install_mpm.newton import convergence_order
 from install_mpm.pile import rigid_displacement
 from install_mpm.screw_path import Target
-from install_mpm.screw_pile import Helix, ScrewPile, part_names
+from install_mpm.screw_pile import Helix, ScrewPile, edge_thickness, part_names
 from install_mpm.screw_programme import Pose, advancement_ratio, rim_travel
 from install_mpm.screw_setup import ScrewInstallation
 from install_mpm.state_file import InstalledState
@@ -127,18 +128,10 @@ def rig_loads(pile: ScrewPile, equilibrium: StepEquilibrium, pose: Pose) -> tupl
 
 def _far_field(state: InstalledState, equilibrium: StepEquilibrium) -> dict[str, object]:
     """Return how far the resultants on the pile are from what supports and weight say."""
-    contact, supports = equilibrium.contact, equilibrium.reaction
     end = state.background_mesh.nodes + equilibrium.displacement
-    force = contact.force.sum(axis=0)
-    loads = (supports.sum(axis=0), equilibrium.external_force.sum(axis=0))
-    largest = max(map(np.linalg.norm, (force, *loads)))
-    torque = np.cross(contact.position, contact.force)[:, 2].sum()
-    far_torque = np.cross(end, supports)[:, 2].sum()
-    return {
-        "far_force_mismatch": np.linalg.norm(force - sum(loads)) / (largest or 1.0),
-        "far_torque_mismatch": abs(torque - far_torque)
-        / (max(abs(torque), abs(far_torque)) or 1.0),
-    }
+    loads = equilibrium.reaction + equilibrium.external_force
+    mismatch = far_field_mismatch(equilibrium.contact, end, loads)
+    return {"far_force_mismatch": mismatch.force, "far_moment_mismatch": mismatch.moment}
 
 
 def weight_of(pile: ScrewPile, tip_depth: float) -> float:
@@ -148,9 +141,17 @@ def weight_of(pile: ScrewPile, tip_depth: float) -> float:
 
 
 def plate_volume(pile: ScrewPile, helix: Helix) -> float:
-    """Return the volume in m^3 of a plate outside the shaft."""
+    """Return the volume in m^3 of a plate outside the shaft.
+
+    That of rounded edges is a series in their thickness, short of terms of fourth order.
+    """
     annulus = (helix.radius**2 - pile.shaft_radius**2) / 2.0
     thinned = 0.0
     if helix.edge_thickness is not None:
         thinned = (helix.thickness - helix.edge_thickness) * helix.taper_angle
-    return float(annulus * (helix.thickness * helix.winding - thinned))
+    noses = 0.0
+    if helix.edges == "rounded":
+        half, product = edge_thickness(helix) / 2.0, pile.shaft_radius * helix.radius
+        width = helix.radius - pile.shaft_radius  # between the cylinders of shaft and rim
+        noses = np.pi * half**2 * width * (1.0 + half**2 / (8.0 * product))
+    return float(annulus * (helix.thickness * helix.winding - thinned) + noses)

@@ -74,6 +74,7 @@ def set_up(
         solve=SOLVERS[numerics.linear_solver](pattern),
         numerics=numerics,
         kinematics=Kinematics.THREE_D,
+        compares_resultants=True,
     )
     return ScrewInstallation(
         ground, pile, law, box, programme, numerics, model,

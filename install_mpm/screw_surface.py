@@ -17,10 +17,9 @@ from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule
 from install_mpm.screw_pile import (
     PARTS_OF_PILE,
     ScrewPile,
-    distance_to_parts,
     edge_parts,
-    surface_normals,
 )
+from install_mpm.screw_shape import distance_to_parts, surface_normals
 
 ON_SURFACE = 1e-4
 """Distance, over the shaft diameter, within which a mesh node counts as lying on the pile.

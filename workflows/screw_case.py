@@ -12,7 +12,7 @@ from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import GroundProfile
 from install_mpm.options import Box, ScrewMeshOptions, ScrewNumerics
-from install_mpm.screw_pile import Helix, ScrewPile
+from install_mpm.screw_pile import Helix, ScrewPile, edge_thickness
 from install_mpm.screw_pile_mesh import WALL_SIDES
 from install_mpm.screw_programme import (
     ProgrammeError,
@@ -39,6 +39,9 @@ LARGEST_ON_SHAFT = 2.0
 
 LARGEST_AT_EDGES = 2.5
 """Largest cell size at the edges over the thickness of the plate there."""
+
+LARGEST_AT_NOSE = 1.0
+"""The same of rounded edges: a quarter turn takes a facet at least, an arc of 0.8 thicknesses."""
 
 LARGEST_STEP = 0.25
 """Largest travel of the rim in a step over the size of the cells at the edges."""
@@ -205,15 +208,16 @@ def _check_sizes(case: ScrewCase) -> None:
         )
     smallest = mesh.size_at_edges
     for helix in pile.helices:
-        edge = helix.edge_thickness or helix.thickness
+        edge = edge_thickness(helix)
+        at_edges = LARGEST_AT_NOSE if helix.edges == "rounded" else LARGEST_AT_EDGES
         for key, size, limit in (
             ("size_at_plate", mesh.size_at_plate, LARGEST_ON_PLATE * helix.thickness),
-            ("size_at_edges", mesh.size_at_edges, LARGEST_AT_EDGES * edge),
+            ("size_at_edges", mesh.size_at_edges, at_edges * edge),
         ):
             if size > limit:
                 raise CaseError(
                     f"background_mesh.{key} {size:g} m cannot hold a plate {helix.thickness:g} m "
-                    f"thick ({edge:g} m at its edges); take at most {limit:g} m"
+                    f"thick ({edge:g} m at its {helix.edges} edges); take at most {limit:g} m"
                 )
         smallest = min(smallest, 2.0 * edge)
     if case.installation.step > LARGEST_STEP * smallest:

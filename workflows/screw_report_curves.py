@@ -255,16 +255,15 @@ def far_field(case: ScrewCase, history: ScrewHistory) -> Figure:
     here = axes[0, 0]
     along, label = abscissa(case.pile, history)
     for values, colour, name in (
-        (history.far_torque_mismatch, INSTALLED, "torque"),
+        (history.far_moment_mismatch, INSTALLED, "moment"),
         (history.far_force_mismatch, WISHED, "force"),
         (history.residual, MUTED, "residual of Newton's method"),
     ):
         known = values > 0.0
-        known[0] = False  # in the first step nothing moves: there is no torque to compare
         here.semilogy(along[known], values[known], color=colour, label=name, linewidth=1.2)
     here.axhline(case.numerics.tolerance, color=INK, linestyle="--", linewidth=0.9,
                  label="tolerance of the case")  # fmt: skip
-    here.set(xlabel=label, ylabel="mismatch / largest")
+    here.set(xlabel=label, ylabel="mismatch, relative")
     here.legend(loc="upper left", bbox_to_anchor=(1.02, 1.0))
     grid(here)
     return figure

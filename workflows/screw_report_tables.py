@@ -71,14 +71,14 @@ def _check_rows(installed: InstalledState, history: ScrewHistory) -> list[Row]:
     """Return what tells whether the figures can be trusted, over the driven steps."""
     moved = history.travel > 0.0
     worst = float(balance_error(history)[moved].max(initial=0.0))
-    torque = float(history.far_torque_mismatch[moved].max(initial=0.0))
+    moment = float(history.far_moment_mismatch.max())
     force = float(history.far_force_mismatch.max())
     return [
         _group("checks"),
         ["work of the rig", number(whole(float(history.rig_work.sum()), "J"))],
         ["error of the power balance, all steps", number(whole(balance_of(history), "", 2))],
         ["error of the power balance, worst step", number(whole(worst, "", 2))],
-        ["torque on the pile against the supports, worst step", number(whole(torque, "", 2))],
+        ["moment on the pile against the supports, worst step", number(whole(moment, "", 2))],
         ["force on the pile against the supports, worst step", number(whole(force, "", 2))],
         ["cells", number(str(len(installed.background_mesh.cell_nodes)))],
     ]

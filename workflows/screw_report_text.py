@@ -35,8 +35,11 @@ CAPTIONS = {
     "irregular": """What the scheme had to treat in each step: cells that are not full; material
         points that were split, merged or had left the mesh; the range of the volume ratio of all
         points (1: no change); and the shape of the worst cell (1 is regular).""",
-    "far": """Torque and force found on the pile against those found at the supports far away. Both
-        are the same in equilibrium, so the difference is an independent check of the solution.""",
+    "far": """Force and moment found on the pile against those of supports far away and weight,
+        three components each. They are the same in equilibrium, so the difference is an independent
+        check of the solution: no step is accepted in which it exceeds the tolerance. The measure is
+        the sum of the magnitudes of the forces on the pile, for the moment of each force times its
+        distance from the axis.""",
 }
 """Captions of the figures by name."""
 

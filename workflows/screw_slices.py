@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from install_mpm.ground import GroundProfile, geostatic_stress
 from install_mpm.screw_pile import ScrewPile, thickness_at, winding_angle
 from install_mpm.screw_programme import Pose, rim_radius
+from install_mpm.screw_shape import distance_to_noses
 from workflows.report_style import INK, PILE
 from workflows.screw_frames import PointCloud
 
@@ -101,8 +102,10 @@ def distance_from_pile(pile: ScrewPile, pose: Pose, places: np.ndarray) -> np.nd
         beyond = np.maximum(-winding, winding - helix.winding) * radius
         off_plate = np.abs(own[:, 2] - middle) - thickness_at(helix, winding) / 2.0
         outside = np.maximum(radius - helix.radius, pile.shaft_radius * 0.9 - radius)
-        plate = np.maximum(np.maximum(off_plate, beyond), outside)
-        distance = np.minimum(distance, plate)
+        body = np.maximum(off_plate, beyond)
+        if helix.edges == "rounded":
+            body = np.minimum(body, distance_to_noses(pile, helix, own))
+        distance = np.minimum(distance, np.maximum(body, outside))
     return distance.reshape(places.shape[:-1])
 
 

@@ -172,22 +172,3 @@ def add_mean_modes(modulus_strain, scratch, stiffness):
             right[a * dim + i] = scratch.mean_divergence[a, i]
             left[a * dim + i] = modulus_strain * scratch.mean_divergence[a, i]
     add_product(left, right, stiffness)
-
-
-@jit
-def add_soft_stiffness(
-    first, last, stiffness_volume, cell_nodes, points, displacement, force, stiffness
-):
-    """Add the incremental stiffness grad(u) : grad(v) that holds partly filled cells together."""
-    n_nodes, dim = cell_nodes.shape[0], displacement.shape[1]
-    for q in range(first, last):
-        gradients = points.shape_gradients[q]
-        for a in range(n_nodes):
-            for b in range(n_nodes):
-                value = 0.0
-                for j in range(dim):
-                    value += gradients[a, j] * gradients[b, j]
-                value *= stiffness_volume
-                for i in range(dim):
-                    stiffness[a * dim + i, b * dim + i] += value
-                    force[a, i] += value * displacement[cell_nodes[b], i]

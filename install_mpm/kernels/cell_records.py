@@ -27,7 +27,8 @@ class CellOptions(NamedTuple):
     volumetric_term: np.ndarray
     """h_v of each cell, (n_cells,) in Pa."""
     soft_stiffness: np.ndarray
-    """Incremental stiffness of partly filled cells times volume per integration point, in N m."""
+    """Shear modulus of the soft stress of partly filled cells times volume per integration point,
+    (n_cells,) in N m."""
 
 
 class Scratch(NamedTuple):

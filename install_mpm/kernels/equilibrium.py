@@ -29,7 +29,6 @@ from install_mpm.kernels.cell_blocks import (
     add_hoop,
     add_mean_modes,
     add_moduli,
-    add_soft_stiffness,
     gather_moduli,
     volume_modes,
 )
@@ -41,6 +40,7 @@ from install_mpm.kernels.cell_records import (
     dilatation_axes,
     make_scratch,
 )
+from install_mpm.kernels.soft_stress import add_soft_stress
 
 
 @parallel_jit
@@ -103,9 +103,9 @@ def _evaluate_cell(
     if modulus > 0.0:
         add_mean_modes(modulus * cell_strain, scratch, stiffness)
     if options.soft_stiffness[c] > 0.0:
-        add_soft_stiffness(
-            first, last, options.soft_stiffness[c], cell_nodes, points, displacement, force,
-            stiffness,
+        add_soft_stress(
+            first, last, options.soft_stiffness[c], cell_nodes, points, displacement, options,
+            scratch, force, stiffness,
         )  # fmt: skip
 
 

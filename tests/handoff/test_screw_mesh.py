@@ -11,7 +11,8 @@ from handoff.options import HandoffOptions
 from handoff.screw_mesh import make_screw_mesh
 from handoff.surface import SurfaceProfile, height_at, level_surface
 from install_mpm.options import Box
-from install_mpm.screw_pile import Helix, ScrewPile, first_part, surface_normals
+from install_mpm.screw_pile import Helix, ScrewPile, first_part
+from install_mpm.screw_shape import surface_normals
 
 pytestmark = pytest.mark.gmsh
 
@@ -60,6 +61,17 @@ def test_boundary_is_closed_and_its_parts_have_their_areas(mesh):
     assert [size[edge] for edge in edges] == pytest.approx([0.25 * 0.12] * 2, rel=1e-3)
     assert size[2] == pytest.approx(2.0 * np.pi * 0.25 * (PILE.embedment - 0.12), rel=0.05)
     assert size[first_part(0)] == pytest.approx(size[first_part(0) + 1], rel=0.02)
+
+
+def test_rounded_edges_are_meshed_as_well():
+    """Two chords are 10 % short of a half circle."""
+    rounded = replace(PILE, helices=(replace(PILE.helices[0], edges="rounded"),))
+    mesh = make_screw_mesh(rounded, ANGLE, BOX, OPTIONS, level_surface())
+    areas = vector_areas(mesh)
+    np.testing.assert_allclose(areas.sum(axis=0), 0.0, atol=1e-10)
+    for edge in first_part(0) + np.array([3, 4]):
+        size = np.linalg.norm(areas[mesh.facet_tag == edge], axis=1).sum()
+        assert size == pytest.approx(np.pi * 0.06 * 0.25, rel=0.15)
 
 
 def test_facets_of_a_part_face_as_its_exact_normals_do(mesh):

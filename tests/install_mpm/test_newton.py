@@ -55,6 +55,21 @@ def arctangent():
     return Problem(np.arctan, lambda x: 1.0 / (1.0 + x**2))
 
 
+def test_resultants_have_to_balance_as_well():
+    """The iteration goes on until they do, and ends without convergence if they never do."""
+    problem = square_root()
+    offsets = iter([1.0] * 6 + [0.0] * 20)
+
+    def evaluate(x):
+        return problem(x)._replace(mismatch=next(offsets))
+
+    result = solve(evaluate, 2.0)
+    assert result.is_converged
+    assert result.mismatch == 0.0
+    assert len(problem.trials) > 6
+    assert not solve(lambda x: problem(x)._replace(mismatch=1e-9), 2.0).is_converged
+
+
 def test_scalar_problem_converges_quadratically():
     result = solve(square_root(), 2.0, tolerance=1e-11)
     assert result.is_converged

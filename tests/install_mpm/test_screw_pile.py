@@ -8,19 +8,20 @@ from install_mpm import screw_surface
 from install_mpm.background_mesh import cell_quality
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.conventions import rotation_matrix
+from install_mpm.far_field import far_field_mismatch
 from install_mpm.ground import Ground
 from install_mpm.location import relocate
+from install_mpm.material_points import MaterialPoints
 from install_mpm.options import Box, Numerics, ScrewMeshOptions
 from install_mpm.record import StateFileError
 from install_mpm.screw_history import ScrewHistory
-from install_mpm.screw_installation import install_screw_pile
+from install_mpm.screw_installation import install_screw_pile, step_to
 from install_mpm.screw_path import Target, last_way, next_target, way_done
 from install_mpm.screw_pile import (
     Helix,
     ScrewPile,
-    distance_to_parts,
+    edge_thickness,
     part_names,
-    surface_normals,
     thickness_at,
 )
 from install_mpm.screw_pile_mesh import generate_screw_mesh
@@ -36,6 +37,7 @@ from install_mpm.screw_programme import (
 )
 from install_mpm.screw_record import plate_volume, weight_of
 from install_mpm.screw_setup import geostatic_state, mesh_zones, move_mesh, set_up
+from install_mpm.screw_shape import distance_to_parts, surface_normals
 from install_mpm.state_file import read_installed_state, write_installed_state
 from install_mpm.winding import winding_change
 
@@ -176,6 +178,102 @@ def test_mesh_conforms_to_a_tapered_plate():
         ("rim", rim), ("leading edge", 0.06 * (r - a)), ("trailing edge", 0.06 * (r - a)),
     ):  # fmt: skip
         assert of_part[names.index(name)] == pytest.approx(exact, rel=0.05)
+
+
+ROUNDED = {
+    "whole plate": Helix(1.0, 0.33, 0.12, 0.25, edges="rounded"),
+    "tapered plate": Helix(
+        1.0, 0.33, 0.12, 0.25, edge_thickness=0.06, taper_angle=1.0, edges="rounded"
+    ),
+}
+
+
+def places_on_nose(pile, helix, end, n, rng):
+    """Random places on a rounded edge, from its parametric form: half circles that climb."""
+    along, angle = rng.uniform(0.25, 0.49, n), rng.uniform(-1.5, 1.5, n)
+    half = edge_thickness(helix) / 2.0
+    ahead, rise = half * np.cos(angle), half * np.sin(angle)
+    winding = helix.winding if end == "trailing edge" else 0.0
+    onward = ahead if end == "trailing edge" else -ahead
+    polar = pile.sense * winding
+    level = pile.leading_level(helix) + helix.pitch * (winding + onward / along) / (2 * np.pi)
+    across = pile.sense * onward
+    return np.column_stack([
+        along * np.cos(polar) - across * np.sin(polar),
+        along * np.sin(polar) + across * np.cos(polar),
+        level + rise,
+    ])  # fmt: skip
+
+
+@pytest.mark.parametrize("hand", ["right", "left"])
+@pytest.mark.parametrize("end", ["leading edge", "trailing edge"])
+@pytest.mark.parametrize("helix", ROUNDED.values(), ids=ROUNDED)
+def test_normal_of_a_rounded_edge_is_the_gradient_of_its_distance(helix, end, hand, rng):
+    pile = ScrewPile(0.5, 1.2, (helix,), 8e3, hand=hand)
+    number = part_names(pile).index(end)
+    places = places_on_nose(pile, helix, end, 50, rng)
+    np.testing.assert_allclose(distance_to_parts(pile, places)[:, number], 0.0, atol=1e-12)
+    assert (distance_to_parts(pile, places).argmin(axis=1) == number).all()
+    outside, step = 5e-3, 1e-6  # of the surface the distance has a bend, so a little away from it
+    near = places - outside * surface_normals(pile, np.full(50, number), places)
+    normals = surface_normals(pile, np.full(50, number), near)
+    gradient = np.column_stack([
+        distance_to_parts(pile, near + step * unit)[:, number]
+        - distance_to_parts(pile, near - step * unit)[:, number]
+        for unit in np.eye(3)
+    ])  # fmt: skip
+    gradient /= np.linalg.norm(gradient, axis=1)[:, None]
+    np.testing.assert_allclose(normals, -gradient, atol=1e-7)
+
+
+def test_faces_go_over_into_a_rounded_edge_without_a_corner(rng):
+    """The plate keeps its thickness; one that thins has the slope of its faces there."""
+    helix = ROUNDED["whole plate"]
+    pile = ScrewPile(0.5, 1.2, (helix,), 8e3)
+    names = part_names(pile)
+    along = rng.uniform(0.25, 0.5, 20)
+    for face, sign in (("lower face", -0.5), ("upper face", 0.5)):
+        level = np.full(20, pile.leading_level(helix) + sign * helix.thickness)
+        places = np.column_stack([along, np.zeros(20), level])
+        of_face, of_edge = (
+            surface_normals(pile, np.full(20, names.index(name)), places)
+            for name in (face, "leading edge")
+        )
+        np.testing.assert_allclose(of_edge, of_face, atol=1e-12)
+
+
+def test_mesh_conforms_to_rounded_edges():
+    """Every facet of the pile is found; two chords in a quarter turn are 3 % short of the arc."""
+    helix = ROUNDED["tapered plate"]
+    pile = ScrewPile(0.5, 1.2, (helix,), 8e3)
+    mesh = generate_screw_mesh(pile, BOX, ScrewMeshOptions(0.06, 0.3, 0.4, 1.2, 0.05))
+    elements, part, normals = screw_surface.pile_elements(mesh, pile)
+    _, area, facet_normal = screw_surface.place_points(elements, mesh)
+    names = part_names(pile)
+    of_part = np.bincount(np.repeat(part, 3), area, len(names))
+    a, r = pile.shaft_radius, helix.radius
+    for name in ("leading edge", "trailing edge"):
+        assert of_part[names.index(name)] == pytest.approx(np.pi * 0.03 * (r - a), rel=0.05)
+    for name in ("lower face", "upper face"):
+        assert of_part[names.index(name)] == pytest.approx(np.pi * (r**2 - a**2), rel=0.05)
+    assert (np.einsum("pi,pi->p", normals, facet_normal) > 0.4).all()
+    soil_and_air = np.pi * BOX.width**2 * (BOX.depth + BOX.headroom)
+    inside = weight_of(pile, pile.embedment + BOX.headroom) / pile.unit_weight
+    assert volume_of(mesh).sum() == pytest.approx(soil_and_air - inside, rel=0.02)
+    assert cell_quality(mesh).min() > 0.02
+
+
+def test_volume_of_rounded_edges():
+    """Half circles between two cylinders, integrated over the distance from the edge."""
+    helix = ROUNDED["whole plate"]
+    a, r, half = 0.25, helix.radius, helix.thickness / 2.0
+    ahead = half * np.sin(np.linspace(0.0, np.pi / 2.0, 20001))
+    width = np.sqrt(r**2 - ahead**2) - np.sqrt(a**2 - ahead**2)
+    noses = 2.0 * trapezoid(2.0 * np.sqrt(half**2 - ahead**2) * width, ahead)
+    blunt = Helix(1.0, 0.33, 0.12, 0.25)
+    assert plate_volume(pile_of(), helix) - plate_volume(pile_of(), blunt) == pytest.approx(
+        noses, rel=1e-4
+    )
 
 
 def test_volume_of_a_tapered_plate():
@@ -346,8 +444,32 @@ def test_pressure_on_shaft_and_tip_has_no_torque(history, right_pile):
 
 
 def test_resultants_on_the_pile_are_those_of_the_supports(history):
-    assert (history.far_force_mismatch < 2e-6).all()
-    assert (history.far_torque_mismatch[1:] < 1e-3).all()
+    """All six, to the tolerance: in every step, the first one at rest included."""
+    assert (history.far_force_mismatch <= 1e-6).all()
+    assert (history.far_moment_mismatch <= 1e-6).all()
+
+
+def test_partly_filled_cells_have_no_moment(installed, right_pile):
+    """Soil is taken away behind the trailing edge; the soft stress holds what is left in a step."""
+    state = installed[3]
+    programme = ScrewProgramme((Phase("in", 0.03, 1.0),), 0.03)
+    problem = problem_of(state.background_mesh, right_pile, programme)
+    edge = [0.375, 0.0, right_pile.leading_level(HELIX) + HELIX.pitch]
+    away = np.linalg.norm(state.material_points.position - edge, axis=1)
+    stays = (away > 0.3) | (np.arange(len(away)) % 5 == 0)
+    points = MaterialPoints(*(field[stays] for field in state.material_points))
+    state = state._replace(material_points=points)
+    pose = Pose(float(state.pile.penetration) + 1e-3, float(state.pile.rotation) - 0.02)
+    result = step_to(problem, state, Target(phase=0, share=0.1, way=0.0, pose=pose))
+    assert result.is_converged
+    assert result.counts.partly_filled_cells > 20
+    equilibrium = result.equilibrium
+    end = state.background_mesh.nodes + equilibrium.displacement
+    moments = np.cross(end, equilibrium.internal_force)
+    assert np.abs(moments.sum(axis=0)).max() < 1e-11 * np.abs(moments).sum()
+    loads = equilibrium.reaction + equilibrium.external_force
+    assert max(far_field_mismatch(equilibrium.contact, end, loads)) <= 1e-6
+    assert equilibrium.newton.mismatch <= 1e-6
 
 
 def test_work_of_the_rig_is_taken_up_by_interface_and_soil(history):

@@ -53,6 +53,11 @@ REFUSED = {
         ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='20 mm', height='0.25 m'}]"],
         "cannot hold a plate 0.02 m thick",
     ),
+    "rounded edges that one facet would cut off": (
+        ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='0.12 m', height='0.25 m', "
+         "edges='rounded'}]"],
+        r"size_at_edges 0.2 m cannot hold .* at its rounded edges.; take at most 0.12 m",
+    ),
     "pile deeper than the box": (["box.depth='2.4 m'"], "make box.depth at least"),
     "pitch smaller than the plate": (
         ["pile.helices=[{diameter='1 m', pitch='0.1 m', thickness='0.12 m', height='0.25 m'}]"],

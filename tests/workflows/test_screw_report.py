@@ -126,7 +126,7 @@ def row_of(case, number, travel, pose):
         "lateral_force": [1e3 * share, 0.0], "overturning_moment": [0.0, 2e3 * share],
         "part_torque": share * (tangential + normal), "part_normal_torque": share * normal,
         "part_force": np.zeros(n_parts),
-        "far_force_mismatch": 1e-8, "far_torque_mismatch": 1e-7,
+        "far_force_mismatch": 1e-8, "far_moment_mismatch": 1e-7,
         "rig_work": work, "interface_work": 0.6 * work, "soil_work": 0.5 * work,
         "weight_work": 0.1 * work * (1.0 + 1e-3),
         "iterations": 4, "residual": 1e-7, "convergence_order": 1.9 if number else np.nan,
@@ -346,6 +346,16 @@ def test_distance_from_the_pile_is_zero_on_its_surface(case, states):
     level = case.pile.leading_level(HELIX) + HELIX.pitch / (2.0 * np.pi) - pose.advance
     in_plate = np.array([0.4 * np.cos(polar), 0.4 * np.sin(polar), level])
     assert distance_from_pile(case.pile, pose, in_plate) == pytest.approx(-0.06)
+
+
+def test_distance_from_rounded_edges(case):
+    helix = replace(HELIX, edges="rounded")
+    pile = replace(case.pile, helices=(helix,))
+    sign = np.array([1.0, -pile.sense, 1.0])  # a right-handed plate winds towards +y
+    ahead = np.array([[0.4, y, pile.leading_level(helix)] for y in (0.02, 0.1)]) * sign
+    ahead[:, 2] -= helix.pitch * np.array([0.02, 0.1]) / (2.0 * np.pi * 0.4)
+    found = distance_from_pile(pile, Pose(0.0, 0.0), ahead)
+    np.testing.assert_allclose(found, [-0.04, 0.04], atol=1e-12)
 
 
 def pose_of(state):
