@@ -15,6 +15,9 @@ from install_mpm.kernels import cell_geometry as kernels
 from install_mpm.material_points import MaterialPoints
 from install_mpm.ring_means import ring_means
 
+AT_TOP = 1e-9
+"""Distance from the top of the mesh, over its height, within which a node lies there."""
+
 
 class CellGeometry(NamedTuple):
     """Geometry of the cells at the start of a step; first axes (n_cells, n_integration_points).
@@ -70,7 +73,11 @@ def fill_cells(
     geometry: CellGeometry,
     threshold: float,
 ) -> CellFill:
-    """Return which cells hold points and which of them are interior."""
+    """Return which cells hold points and which of them are interior.
+
+    A vertex that has no void beside it counts as full: in soil that flows round an edge points
+    crowd on one side of a cell and thin out on the other, and yet there is soil everywhere.
+    """
     n_cells = len(mesh.cell_nodes)
     order = np.argsort(points.cell, kind="stable")
     start = np.searchsorted(points.cell[order], np.arange(n_cells + 1))
@@ -82,6 +89,9 @@ def fill_cells(
     vertex_fill = filled / np.where(capacity > 0.0, capacity, 1.0)
     vertices = mesh.cell_nodes[:, : cell.n_vertices]
     volume = np.bincount(points.cell, weights=points.volume, minlength=n_cells)
+    at_void = _at_void(mesh, vertices, vertex_fill, np.diff(start) == 0)
+    is_amid_soil = (capacity > 0.0) & ~at_void
+    vertex_fill = np.where(is_amid_soil, np.maximum(vertex_fill, 1.0), vertex_fill)
     return CellFill(
         point_order=order,
         cell_start=start,
@@ -91,3 +101,18 @@ def fill_cells(
         is_interior=(vertex_fill[vertices] > threshold).all(axis=1),
         cell_volume=geometry.volume,
     )
+
+
+def _at_void(
+    mesh: BackgroundMesh, vertices: np.ndarray, vertex_fill: np.ndarray, is_empty: np.ndarray
+) -> np.ndarray:
+    """Return which nodes (n_nodes,) are at the top of the mesh, or vertices of a void cell.
+
+    Such a cell holds no points, and one of its ``vertices`` (n_cells, n_vertices) has none in any
+    of the cells around it; a single empty cell amid soil is no void.
+    """
+    is_void = is_empty & (vertex_fill[vertices] == 0.0).any(axis=1)
+    height = mesh.nodes[:, -1]
+    at_void: np.ndarray = height > height.max() - AT_TOP * np.ptp(height)
+    at_void[vertices[is_void]] = True
+    return at_void

@@ -49,7 +49,8 @@ class CellFill(NamedTuple):
     share: np.ndarray
     """Volume of the material points over cell volume, (n_cells,)."""
     vertex_fill: np.ndarray
-    """Soil volume over cell volume around each vertex, (n_nodes,); zero at other nodes."""
+    """Soil volume over cell volume around each vertex, (n_nodes,), at least 1 if there is no void
+    beside it; zero at other nodes."""
     is_active: np.ndarray
     """The cell holds material points, (n_cells,) bool."""
     is_interior: np.ndarray

@@ -64,7 +64,7 @@ def mumps(pattern: SparsityPattern) -> Solve:
     """
     row = np.repeat(np.arange(len(pattern.indptr) - 1), np.diff(pattern.indptr))
     is_diagonal = row == pattern.indices
-    last: tuple[np.ndarray, CoupledSystem, Solve] | None = None
+    last: tuple[np.ndarray, CoupledSystem, Solve, Callable[[], None]] | None = None
 
     def solve(values: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
         nonlocal last
@@ -73,9 +73,11 @@ def mumps(pattern: SparsityPattern) -> Solve:
         is_coupled[row[links]] = True
         is_coupled[pattern.indices[links]] = True
         if last is None or not np.array_equal(is_coupled, last[0]):
+            if last is not None:
+                last[-1]()
             system = coupled_system(pattern, is_coupled)
-            last = is_coupled, system, _mumps_of_all(system.indptr, system.indices)
-        _, system, solve_coupled = last
+            last = is_coupled, system, *_mumps_of_all(system.indptr, system.indices)
+        _, system, solve_coupled, _ = last
         result = _each_alone(values[is_diagonal], right_hand_side, is_coupled)
         if len(system.dofs):
             result[system.dofs] = solve_coupled(
@@ -99,8 +101,11 @@ def _each_alone(
     return solution
 
 
-def _mumps_of_all(indptr: np.ndarray, indices: np.ndarray) -> Solve:
-    """Return a MUMPS solver of a matrix in compressed rows, which analyses it once."""
+def _mumps_of_all(indptr: np.ndarray, indices: np.ndarray) -> tuple[Solve, Callable[[], None]]:
+    """Return a MUMPS solver of a matrix in compressed rows, which analyses it once.
+
+    The second function gives its memory back: PETSc keeps what Python has forgotten.
+    """
     from petsc4py import PETSc
 
     n_dofs = len(indptr) - 1
@@ -137,7 +142,11 @@ def _mumps_of_all(indptr: np.ndarray, indices: np.ndarray) -> Solve:
             raise SingularMatrixError("MUMPS could not factorise the tangent")
         return result
 
-    return solve
+    def release() -> None:
+        for held in (solver, factorisation, matrix, solution, load):
+            held.destroy()
+
+    return solve, release
 
 
 def _prepare_mumps(factorisation: Any) -> None:

@@ -78,8 +78,8 @@ def solve_newton(
     Convergence means |residual| <= tolerance * reference, and that resultants balance to the same
     tolerance; at least one correction is always made, unless the start is exact to round-off.  No
     dof is corrected by more than ``largest_correction``, one number or (n_dofs,), in an iteration.
-    An iteration in which all trials increase the residual goes on from the best of them, or ends if
-    it ``gives_up``.
+    If it ``gives_up``, the iteration ends with the first correction that increases the residual;
+    nothing is halved.
     """
     x = start
     state = evaluate(x)
@@ -96,7 +96,7 @@ def solve_newton(
         except SingularMatrixError:
             return NewtonResult(x, False, np.array(residuals), state.mismatch)
         correction = np.clip(correction, -largest_correction, largest_correction)
-        x, state = _backtrack(evaluate, x, correction, state)
+        x, state = _backtrack(evaluate, x, correction, state, 0 if gives_up else BACKTRACKS)
         if not state.is_admissible:
             break
         residuals.append(_relative(state))
@@ -115,6 +115,7 @@ def _backtrack(
     x: np.ndarray,
     correction: np.ndarray,
     before: Evaluation,
+    halvings: int,
 ) -> tuple[np.ndarray, Evaluation]:
     """Return the first admissible trial that does not increase the residual, else the best.
 
@@ -122,7 +123,7 @@ def _backtrack(
     the bending of a slender body, which begins with large forces that the supports share, stops.
     """
     best: tuple[float, np.ndarray, Evaluation] | None = None
-    for halving in range(BACKTRACKS + 1):
+    for halving in range(halvings + 1):
         trial = x + correction * 0.5**halving
         state = evaluate(trial)
         residual = _relative(state) if state.is_admissible else np.inf
@@ -131,6 +132,8 @@ def _backtrack(
         if best is None or residual < best[0]:
             best = (residual, trial, state)
     assert best is not None  # the loop above runs at least once
+    if halvings == 0:
+        return best[1:]
     return best[1], evaluate(best[1])  # what an evaluation leaves behind has to be of this trial
 
 

@@ -80,7 +80,9 @@ class Numerics:
     largest_correction: Annotated[float | None, Gt(0)] = None
     """Of a displacement component in an iteration, over the size of the cells; None: no limit."""
     second_start: bool = False
-    """Begin a step again from rest if the first trial, the last displacement, leads nowhere."""
+    """Begin a step again from rest once a correction of its first trial, the last displacement,
+    increases the residual.
+    """
     most_points_per_cell: Annotated[int, Ge(3)] = 48
     """Material points are merged in cells that hold more."""
     checkpoint_every: Annotated[int, Ge(1)] = 10

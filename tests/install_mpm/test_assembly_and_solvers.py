@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 from install_mpm.assembly import as_matrix, sparsity_pattern
 from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
-from install_mpm.linear_solvers import SOLVERS, SingularMatrixError
+from install_mpm.linear_solvers import SOLVERS, SingularMatrixError, coupled_system
 
 N_NODES, DIM = 9, 2
 N_DOFS = N_NODES * DIM
@@ -117,6 +118,29 @@ def test_solver_is_used_again_with_other_values(solver, system, pattern, rng):
         np.testing.assert_allclose(solve(other, other_load), expected, rtol=1e-8, atol=1e-8)
     np.testing.assert_array_equal(first, kept)
     np.testing.assert_array_equal(solve(values, load), kept)
+
+
+def test_only_coupled_dofs_are_factorised_and_they_may_change(pattern, blocks, rng):
+    """Cells come and go: the answer is that of the dense matrix, and that of a new solver."""
+    solve, load = SOLVERS["mumps"](pattern), rng.normal(size=N_DOFS)
+    for held in ([0, 5], [0, 5, 9, 10], range(N_DOFS), [2]):
+        values = assembled(pattern, blocks)
+        is_free = np.ones(N_DOFS, dtype=bool)
+        is_free[[*held, 16, 17]] = False
+        constrain(pattern.indptr, pattern.indices, is_free, values)
+        result = solve(values, load)
+        expected = np.linalg.solve(as_matrix(pattern, values).toarray(), load)
+        np.testing.assert_allclose(result, expected, rtol=1e-9, atol=1e-10)
+        np.testing.assert_array_equal(result, SOLVERS["mumps"](pattern)(values, load))
+
+
+def test_coupled_system_is_the_matrix_of_its_dofs(pattern, blocks, rng):
+    values, is_coupled = assembled(pattern, blocks), rng.uniform(size=N_DOFS) < 0.6
+    part = coupled_system(pattern, is_coupled)
+    n = len(part.dofs)
+    small = sparse.csr_matrix((values[part.entries], part.indices, part.indptr), shape=(n, n))
+    whole = as_matrix(pattern, values).toarray()
+    np.testing.assert_array_equal(small.toarray(), whole[np.ix_(part.dofs, part.dofs)])
 
 
 @every_solver

@@ -10,7 +10,7 @@ from install_mpm.constitutive import dispatch
 from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.geostatic import elastic_strain_of, geostatic_gradient
 from install_mpm.ground import geostatic_stress
-from install_mpm.injection import inject
+from install_mpm.injection import inject, merge
 from install_mpm.kernels.carry import body_force
 from install_mpm.material_points import MaterialPoints
 from install_mpm.seeding import seed_points
@@ -185,6 +185,57 @@ def test_interior_cells_have_all_vertices_above_the_threshold(mesh, clay_ground,
     _, _, fill, _ = carried(points, mesh, clay_ground)
     for cell, is_interior in zip(mesh.cell_nodes, fill.is_interior, strict=True):
         assert is_interior == (fill.vertex_fill[cell[:3]] > THRESHOLD).all()
+
+
+def test_soil_that_has_thinned_out_inside_is_no_void(make_grid, clay_ground):
+    """Around one vertex hardly a point is left, and one cell has none: the ground is still full."""
+    mesh = make_grid(6, 6, width=3.0, depth=3.0)
+    points = seed_points(mesh, CELL, clay_ground, 2)
+    inside = np.argmin(np.linalg.norm(mesh.nodes - [1.5, -1.5], axis=1))
+    around = np.flatnonzero((mesh.cell_nodes[:, :3] == inside).any(axis=1))
+    points.volume[np.isin(points.cell, around)] *= 0.05
+    points = kept(points, points.cell != around[0])
+    quadrature, _, fill, geometry = carried(points, mesh, clay_ground)
+    assert fill.share[around].max() < THRESHOLD / 4.0
+    assert fill.is_interior.all()
+    volume = quadrature.volume.reshape(-1, 3).sum(axis=1)
+    np.testing.assert_allclose(volume[fill.is_active], geometry.volume[fill.is_active])
+    refilled = inject(points, mesh, CELL, geometry, fill, geostatic_gradient(clay_ground, 1))
+    assert np.bincount(refilled.cell, minlength=len(mesh.cell_nodes)).min() > 0
+    assert refilled.volume.sum() == pytest.approx(points.volume.sum(), rel=1e-14)
+
+
+@pytest.mark.parametrize("most", [3, 5, 11])
+def test_merging_conserves_integrals(mesh, clay_ground, rng, most):
+    """However many of the twelve points of a cell have to go, some of them more than once."""
+    points = scattered(mesh, clay_ground, rng)
+    points.volume_ratio[:] = rng.uniform(0.9, 1.1, len(points.mass))
+    points.elastic_log_strain[:] = rng.normal(size=points.elastic_log_strain.shape)
+    _, _, fill, _ = carried(points, mesh, clay_ground)
+    merged = merge(points, CELL, fill, most)
+    assert np.bincount(merged.cell).max() == most
+    for c in range(len(mesh.cell_nodes)):
+        before, after = (kept(of, of.cell == c) for of in (points, merged))
+        for of_cell in (
+            lambda of: of.mass.sum(),
+            lambda of: of.volume.sum(),
+            lambda of: (of.volume / of.volume_ratio).sum(),
+            lambda of: of.volume @ of.position,
+            lambda of: np.tensordot(of.volume, of.elastic_log_strain, axes=1),
+            lambda of: np.tensordot(of.volume / of.volume_ratio, of.kirchhoff_stress, axes=1),
+        ):
+            np.testing.assert_allclose(of_cell(after), of_cell(before), rtol=1e-12, atol=1e-14)
+
+
+def test_thin_cover_at_the_top_of_the_mesh_is_not_taken_for_full_ground(make_grid, clay_ground):
+    """The one row of cells into which soil heaves holds some everywhere, and is not empty."""
+    mesh = make_grid(4, 4, width=2.0, depth=2.0)
+    points = seed_points(mesh, CELL, clay_ground, 3)
+    top = mesh.nodes[mesh.cell_nodes[:, :3], 1].max(axis=1) > -1e-9
+    points.volume[top[points.cell]] *= 0.1
+    _, _, fill, _ = carried(points, mesh, clay_ground)
+    assert fill.is_active.all()
+    assert not fill.is_interior[top].any()
 
 
 def test_empty_sub_region_takes_the_mean_of_its_cell(mesh, clay_ground, rng):
