@@ -131,11 +131,7 @@ def find_equilibrium(
     if prescribed.displacement.any() and not start.any():
         first = _elastic_solution(system, first, solve)
     newton = solve_newton(
-        system.evaluate,
-        solve,
-        first,
-        model.numerics.tolerance,
-        model.numerics.max_iterations,
+        system.evaluate, solve, first, model.numerics.tolerance, model.numerics.max_iterations
     )
     reaction = np.where(prescribed.is_prescribed, system.out_of_balance, 0.0)
     return StepEquilibrium(
