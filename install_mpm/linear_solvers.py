@@ -129,12 +129,7 @@ def _mumps_of_all(indptr: np.ndarray, indices: np.ndarray) -> tuple[Solve, Calla
         matrix.setValuesCSR(indptr, indices, values)
         matrix.assemble()
         solver.setOperators(matrix)
-        columns = []
-        for column in right_hand_side.reshape(n_dofs, -1).T:
-            load.setArray(column)
-            solver.solve(load, solution)
-            columns.append(np.array(solution.getArray()))
-        result = np.stack(columns, axis=1).reshape(right_hand_side.shape)
+        result = _solve_columns(solver, load, solution, right_hand_side)
         if solver.getConvergedReason() < 0 or not np.isfinite(result).all():
             factorisation.reset()  # PETSc would leave out the factorisation after one that failed
             solver.setOperators(matrix)
@@ -147,6 +142,18 @@ def _mumps_of_all(indptr: np.ndarray, indices: np.ndarray) -> tuple[Solve, Calla
             held.destroy()
 
     return solve, release
+
+
+def _solve_columns(
+    solver: Any, load: Any, solution: Any, right_hand_side: np.ndarray
+) -> np.ndarray:
+    """Return the solutions of all columns; PETSc factorises at the first of them."""
+    columns = []
+    for column in right_hand_side.reshape(len(right_hand_side), -1).T:
+        load.setArray(column)
+        solver.solve(load, solution)
+        columns.append(np.array(solution.getArray()))
+    return np.stack(columns, axis=1).reshape(right_hand_side.shape)
 
 
 def _prepare_mumps(factorisation: Any) -> None:

@@ -223,7 +223,7 @@ def accept(
         result.interface, problem.model.elements, problem.normals, pose.rotation, result.mesh,
         problem.ground, problem.law,
     )  # fmt: skip
-    turn = rotation_matrix(motion.rotation, 3)
+    displaced = result.equilibrium.displacement @ rotation_matrix(motion.rotation, 3).T
     row = history_row(problem, state, result, target, pose)
     row |= winding_change(
         problem, result.points, result.mesh, interface, float(state.pile.rotation), pose
@@ -239,12 +239,7 @@ def accept(
             result.equilibrium.contact.force.sum(axis=0),
         ),
         history=append(state.history, row),
-        control=accepted_control(
-            state.control,
-            result.equilibrium.displacement @ turn.T,
-            target.way,
-            problem.programme.step,
-        ),
+        control=accepted_control(state.control, displaced, target.way, problem.programme.step),
         case_text=state.case_text,
         kinematics=state.kinematics,
     )

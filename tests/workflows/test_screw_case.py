@@ -119,7 +119,7 @@ def test_a_given_crowd_force_is_read_and_forecast(monkeypatch, capsys):
     with pytest.raises(SystemExit) as stopped:
         cli.main()
     assert stopped.value.code == 0
-    said = capsys.readouterr().out
+    said = " ".join(capsys.readouterr().out.split())
     assert "Screw pile in clay, given crowd force: the case is valid" in said
     steps = int(np.ceil(2.0 * np.pi * 0.06 * 0.5 / 0.028)) + 1
     assert re.search(rf"load steps\W+{steps}\b", said)

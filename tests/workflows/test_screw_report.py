@@ -239,7 +239,7 @@ def test_figures_are_those_of_the_step_in_which_the_rig_stops(page, states):
 def test_points_and_windings_are_told(page):
     text = " ".join(" ".join(page.text).split())
     assert "scatter of the pressure in a cell within a diameter of the pile, worst step" in text
-    assert "3.0 kPa, 0.3 su" in text
+    assert "3.0 kPa, 0.30 su" in text
     assert "largest change by winding the mesh back, 1 times" in text
     assert "0.25 kN" in text
     assert "advancement ratio of the last step that turned 0.875" in text
