@@ -114,7 +114,8 @@ def test_tangent_at_the_apex_regularises_and_no_more(law, trial_strains):
     is_apex = where_returned(soil, result, trial_strains) == 3
     assert is_apex.sum() > 200
     ratios = sizes[is_apex] / sizes.max()
-    assert 0.0 < ratios.min() and ratios.max() < 1e-11
+    assert ratios.min() > 0.0
+    assert ratios.max() < 1e-11
 
 
 @every_law

@@ -3,10 +3,10 @@
 Every factor is found on two meshes: it is approached from above and its error falls.  What is not
 in a table of the references, such as another angle for N_gamma, is refused.
 
-Without cohesion and surcharge (PB4) soil beside the edge of the footing carries some ten pascals, at
-strains of a third, and a point or two is at the apex without stress.  Newton's method is quadratic
-there because nothing but the law's own tangent counts (``frictional.APEX_STIFFNESS``); its first
-steps find the branch of these points slowly and are cut.
+Without cohesion and surcharge (PB4) soil beside the edge of the footing carries some ten pascals at
+shear strains of a third, and a point or two is at the apex, without stress.  Newton's method is
+quadratic there because nothing but the law's own tangent counts (``frictional.APEX_STIFFNESS``);
+the first step is cut until it finds the branches of these points.
 """
 
 from __future__ import annotations
@@ -180,8 +180,8 @@ def _pb4(
     exact = _known(f"PB4-{base.upper()}", STRIP_WEIGHT[base], phi)
     footing = Footing(f"N_gamma, {base}", Strength.WEIGHT, is_rough, exact, TOLERANCE)
     return sand_outcome(
-        (footing,), SIZES_OF_WEIGHT, kinematics=Kinematics.PLANE_STRAIN, width=B, unit=0.5 * gamma * B,
-        friction_angle=phi, rigidity_index=2.0 * E_over_gamma_B, poissons_ratio=nu,
+        (footing,), SIZES_OF_WEIGHT, kinematics=Kinematics.PLANE_STRAIN, width=B,
+        unit=0.5 * gamma * B, friction_angle=phi, rigidity_index=2.0 * E_over_gamma_B, poissons_ratio=nu,
     )  # fmt: skip
 
 
