@@ -181,7 +181,8 @@ def _pb4(
     footing = Footing(f"N_gamma, {base}", Strength.WEIGHT, is_rough, exact, TOLERANCE)
     return sand_outcome(
         (footing,), SIZES_OF_WEIGHT, kinematics=Kinematics.PLANE_STRAIN, width=B,
-        unit=0.5 * gamma * B, friction_angle=phi, rigidity_index=2.0 * E_over_gamma_B, poissons_ratio=nu,
+        unit=0.5 * gamma * B, friction_angle=phi, rigidity_index=2.0 * E_over_gamma_B,
+        poissons_ratio=nu,
     )  # fmt: skip
 
 
