@@ -41,11 +41,14 @@ Soil that has yielded and rests is on its yield surface but for round-off.  With
 tangent at the start of a step would be elastic or plastic by chance, from point to point.
 """
 
-APEX_STIFFNESS = 1e-7
+APEX_STIFFNESS = 1e-12
 """Share of the elastic tangent at the apex, where the law itself has no stiffness.
 
-It keeps matrices regular.  It is not part of the stress: the equilibrium that is found is that of
-the law, and one iteration reduces what the tangent is wrong by to this share.
+It keeps matrices regular and is not part of the stress: the equilibrium that is found is that of
+the law.  But Newton's method reduces what it gets wrong by the ratio of this stiffness to that of
+the soil beside the apex, which resists turning with its stress over its shear strain.  Flowing sand
+that carries 10 Pa at a shear strain of 0.3 has a millionth of an elastic stiffness of 100 MPa, and
+with a share of 1e-7 convergence there is linear; so the share is five orders below that.
 """
 
 

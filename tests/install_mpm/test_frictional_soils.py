@@ -106,6 +106,19 @@ def test_consistent_tangent_is_the_derivative_of_the_stress(
 
 
 @every_law
+def test_tangent_at_the_apex_regularises_and_no_more(law, trial_strains):
+    """There it is a trillionth of the elastic one: soil beside it may have a millionth."""
+    soil = make(law)
+    result = evaluate(soil, trial_strains)
+    sizes = np.linalg.norm(result.tangent, axis=(1, 2))
+    is_apex = where_returned(soil, result, trial_strains) == 3
+    assert is_apex.sum() > 200
+    ratios = sizes[is_apex] / sizes.max()
+    assert ratios.min() > 0.0
+    assert ratios.max() < 1e-11
+
+
+@every_law
 @every_variant
 def test_stress_ends_on_the_yield_surface(law, variant, trial_strains):
     soil = make(law, variant)

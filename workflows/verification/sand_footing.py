@@ -35,7 +35,7 @@ from workflows.verification.strip_footing_fe import footing_mesh
 SIZE_FAR, GROWTH = 0.5, 0.1
 """Edge length far away over B, and its growth with the distance from the footing's edge."""
 STEPS = 20
-MOST_HALVINGS = 4
+MOST_HALVINGS = 6
 """A step that does not converge is cut into at most two to this power."""
 
 
