@@ -1,5 +1,7 @@
 """One step: ground at rest on a moving mesh, and exact deformations in many steps."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -187,6 +189,22 @@ def test_crushed_cells_are_a_failed_step(make_column, clay_ground):
     mesh = column.mesh
     points = column.points()
     assert not column.step(points, mesh, *column.squeeze(mesh, 0.4)).is_converged
+
+
+@pytest.mark.parametrize("leads_nowhere", ["turned inside out", "shaken"])
+def test_step_begins_again_from_rest(make_column, clay_ground, leads_nowhere):
+    """Ground at rest is in equilibrium: the second start ends where it begins."""
+    column = make_column(clay_ground)
+    nodes = column.mesh.nodes
+    far = -2.0 * nodes if leads_nowhere == "turned inside out" else 0.02 * np.sin(40.0 * nodes)
+    numerics = replace(column.model.numerics, second_start=True)
+    column.model = column.model._replace(numerics=numerics)
+    result = column.step(column.points(), column.mesh, start=np.where(column.supports, 0.0, far))
+    assert result.is_converged
+    residuals = result.equilibrium.newton.residuals
+    assert np.isfinite(residuals).all()
+    assert len(residuals) <= 3
+    assert np.abs(result.equilibrium.displacement).max() < 1e-8
 
 
 def test_results_do_not_depend_on_the_number_of_threads(make_column, clay_ground, rng, threads):
