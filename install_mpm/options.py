@@ -96,12 +96,6 @@ class ScrewNumerics(Numerics):
 
     tolerance: Annotated[float, Gt(0), Le(1e-3)] = 1e-4
     """Sand that leaves the pile converges slowly from there on, in a few cells at its apex."""
-    open_stiffness: Annotated[float, Ge(0)] = 1e-3
-    """Sand that has opened behind a trailing edge is held together by nothing else."""
-    largest_correction: Annotated[float | None, Gt(0)] = 0.1
-    """Loose nodes of opened sand would go metres and take all other corrections away."""
-    second_start: bool = True
-    """Soil behind an edge never moves twice in the same way."""
 
 
 @dataclass(frozen=True)
