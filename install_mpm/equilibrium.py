@@ -8,13 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh, size_at_nodes
-from install_mpm.constitutive.dispatch import Materials, Model, state_columns
-from install_mpm.constitutive.elastic import BULK, SHEAR
-from install_mpm.constitutive.pressure_elasticity import bulk_modulus
-from install_mpm.conventions import Kinematics
+from install_mpm.constitutive.dispatch import Model
 from install_mpm.discretisation import Discretisation
 from install_mpm.far_field import far_field_mismatch
-from install_mpm.hanging_soil import cells_around_hanging_soil
 from install_mpm.integration_points import CellFill, IntegrationPoints, Trial, empty_trial
 from install_mpm.interface import (
     Contact,
@@ -24,7 +20,6 @@ from install_mpm.interface import (
     step_axes,
 )
 from install_mpm.kernels.carry import body_force
-from install_mpm.kernels.cell_records import CellOptions
 from install_mpm.kernels.equilibrium import evaluate_cells
 from install_mpm.kernels.interface_force import evaluate_interface
 from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
@@ -32,16 +27,8 @@ from install_mpm.linear_solvers import BorderedTangent, LinearSolve, solve_borde
 from install_mpm.loaded_pile import LoadedMotions, border, turning_places, with_found
 from install_mpm.newton import NO_LIMIT, Evaluation, NewtonResult, solve_newton
 from install_mpm.pile import PileMotion, rigid_displacement
+from install_mpm.soft_terms import PRESSURE_DEPENDENT, cell_options, softly_held
 from install_mpm.timing import measured
-
-PRESSURE_DEPENDENT = (Model.MODIFIED_CAM_CLAY, Model.CRITICAL_STATE_SAND)
-"""Laws whose stiffness grows with the pressure."""
-
-REFERENCE_PRESSURE = 50e3
-"""Pressure in Pa, that in a few metres of depth, at which their stiffness scales soft terms."""
-
-SHEAR_OVER_BULK = 0.5
-"""Shear over bulk modulus there: a Poisson's ratio of 0.29."""
 
 
 class Prescribed(NamedTuple):
@@ -75,54 +62,6 @@ class StepEquilibrium(NamedTuple):
     """What pile and soil do to each other at the end of the step."""
     motion: PileMotion
     """Of the pile in the step, with what was found of it."""
-
-
-def youngs_modulus(materials: Materials) -> np.ndarray:
-    """Return Young's modulus (n_materials,) in Pa, at ``REFERENCE_PRESSURE`` where it varies."""
-    bulk, shear = materials.parameters[:, BULK].copy(), materials.parameters[:, SHEAR].copy()
-    for row in np.flatnonzero(np.isin(materials.model, PRESSURE_DEPENDENT)):
-        bulk[row] = bulk_modulus(REFERENCE_PRESSURE, materials.parameters[row])
-        shear[row] = SHEAR_OVER_BULK * bulk[row]
-    modulus: np.ndarray = 9.0 * bulk * shear / (3.0 * bulk + shear)
-    return modulus
-
-
-def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisation) -> CellOptions:
-    """Return the stiffnesses of this step only: volumetric term, and softly held cells.
-
-    These are cells that soil does not fill, and those in which it has opened.
-    """
-    n_cells, n_per_cell = len(fill.cell_volume), np.diff(points.cell_start)
-    first = np.minimum(points.cell_start[:-1], len(points.material) - 1)
-    modulus = youngs_modulus(model.materials)[points.material[first]]
-    cell = np.repeat(np.arange(n_cells), n_per_cell)
-    counted = np.bincount(cell, points.volume, n_cells) / fill.cell_volume
-    missing = np.maximum(1.0 - counted, 0.0)  # of the volume, not of the points: they may crowd
-    return CellOptions(
-        is_finite_strain=model.is_finite_strain,
-        has_mean_dilatation=model.has_mean_dilatation and model.is_finite_strain,
-        is_axisymmetric=model.kinematics == Kinematics.AXISYMMETRIC,
-        volumetric_term=model.numerics.volumetric_term * modulus,
-        soft_stiffness=modulus
-        * (
-            model.numerics.soft_stiffness * missing
-            + model.numerics.open_stiffness * open_share(points, model.materials)
-        )
-        * fill.cell_volume
-        / np.maximum(n_per_cell, 1),
-    )
-
-
-def open_share(points: IntegrationPoints, materials: Materials) -> np.ndarray:
-    """Return the share of the integration points of each cell that have opened, (n_cells,)."""
-    is_open = np.zeros(len(points.material), dtype=bool)
-    for row, column in enumerate(state_columns(materials, "opening")):
-        if column >= 0:
-            is_open |= (points.material == row) & (points.state_variables[:, column] > 0.0)
-    n_per_cell = np.diff(points.cell_start)
-    cell = np.repeat(np.arange(len(n_per_cell)), n_per_cell)
-    share: np.ndarray = np.bincount(cell, is_open, len(n_per_cell)) / np.maximum(n_per_cell, 1)
-    return share
 
 
 def find_equilibrium(
@@ -199,17 +138,6 @@ def _elastic_solution(system: StepSystem, first: np.ndarray) -> np.ndarray:
     return first + system.solve(state.tangent, -state.residual)
 
 
-def _softly_held(
-    mesh: BackgroundMesh, points: IntegrationPoints, fill: CellFill, options: CellOptions
-) -> np.ndarray:
-    """Return the cells (n_cells,) bool without soil that the soft stress holds."""
-    has_soft_stress = (options.soft_stiffness > 0.0) & (np.diff(points.cell_start) > 0)
-    if not has_soft_stress.any():
-        return has_soft_stress
-    held: np.ndarray = cells_around_hanging_soil(mesh, fill.is_active) & has_soft_stress
-    return held
-
-
 class StepSystem:
     """Work arrays of a step, filled by every evaluation."""
 
@@ -249,7 +177,7 @@ class StepSystem:
         body_force(mesh.cell_nodes, points, model.gravity, self.external)
         if prescribed.force is not None:
             self.external += prescribed.force
-        self.takes_part = fill.is_active | _softly_held(mesh, points, fill, self.options)
+        self.takes_part = fill.is_active | softly_held(mesh, points, fill, self.options)
         is_held = np.zeros(n_nodes, dtype=bool)
         is_held[mesh.cell_nodes[self.takes_part]] = True
         self.is_free = is_held[:, None] & ~prescribed.is_prescribed

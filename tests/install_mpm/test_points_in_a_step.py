@@ -12,13 +12,13 @@ from install_mpm.cells import CellType, reference_cell
 from install_mpm.constitutive.frictional import OPENING
 from install_mpm.constitutive.parameters import CoulombInterface, MohrCoulomb
 from install_mpm.conventions import Kinematics
-from install_mpm.equilibrium import cell_options, open_share
 from install_mpm.ground import Ground
 from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
 from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.pile_surface import initial_interface, pile_elements
 from install_mpm.seeding import seed_points
+from install_mpm.soft_terms import cell_options, open_share
 from install_mpm.step import LEVEL_FILL, switch_on
 
 DENSE_SAND = MohrCoulomb(

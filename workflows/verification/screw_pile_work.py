@@ -19,7 +19,6 @@ from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.elastic import BULK, SHEAR
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.conventions import Unit
-from install_mpm.equilibrium import youngs_modulus
 from install_mpm.ground import Ground
 from install_mpm.integration_points import IntegrationPoints
 from install_mpm.options import Box, Numerics, ScrewMeshOptions
@@ -30,6 +29,7 @@ from install_mpm.screw_pile_mesh import generate_screw_mesh
 from install_mpm.screw_programme import Phase, ScrewProgramme, phase_motion, rim_travel
 from install_mpm.screw_record import Work, work_of_step
 from install_mpm.screw_setup import ScrewInstallation, geostatic_state, set_up
+from install_mpm.soft_terms import youngs_modulus
 from install_mpm.state_file import InstalledState
 from install_mpm.step import StepResult
 from install_mpm.step_control import cut_control
