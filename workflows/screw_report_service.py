@@ -76,17 +76,6 @@ def read_service_files(directory: Path, case: ScrewCase) -> ServiceFiles:
     )
 
 
-def warning_html(files: ServiceFiles) -> str:
-    """Return what a reader must know first: how many checks of the certificate failed."""
-    n_failed = sum(not entry["is_met"] for entry in files.certificate.values())
-    if not n_failed:
-        return ""
-    return (
-        f'<p class="warning">Checks of the certificate that failed: {n_failed}. Look at '
-        '<a href="#handoff">Hand-over</a> before using the results in service.</p>'
-    )
-
-
 def comparison_table(files: ServiceFiles) -> str:
     """Return stiffness and capacities of both models in every programme, and their ratio."""
     head: list[str | Cell] = ["", *map(number, ("installed", "wished in place", "ratio"))]
