@@ -12,6 +12,7 @@ from workflows.screw_case import ScrewCase
 
 if TYPE_CHECKING:
     from handoff.fe_mesh import FEMesh
+    from handoff.fe_state_file import FEState
     from service_fe.problem import ServiceProblem
 
 
@@ -31,6 +32,32 @@ def pile_at_end(case: AnyCase) -> PlacedPile:
         return placed_pile(case, case.final_tip_depth, 0.0)
     end = pose_at(case.pile, case.installation, total_travel(case.pile, case.installation))
     return placed_pile(case, case.pile.embedment + end.advance, end.rotation)
+
+
+def loaded_in_service(
+    case: AnyCase, placed: PlacedPile, problem: ServiceProblem, state: FEState
+) -> tuple[ServiceProblem, FEState]:
+    """Return model and state of the pile in service: rigid as handed over, or deformable.
+
+    ``problem`` and ``state`` are those of the rigid pile.
+
+    Raises
+    ------
+    MeshError
+        If a deformable pile cannot be meshed.
+    """
+    from handoff.pile_mesh import mesh_of_pile
+    from service_fe.deformable_pile import deformable_model
+
+    assert case.service is not None
+    if case.service.pile is None:
+        return problem, state
+    model = deformable_model(
+        problem.mesh, mesh_of_pile(problem.mesh), case.service.pile, case.ground, case.interface,
+        placed.weight(case.ground.water_table), kinematics=placed.kinematics,
+        normals=placed.normals, numerics=case.service.numerics,
+    )  # fmt: skip
+    return model.problem, model.start(state)
 
 
 def service_problem(case: AnyCase, placed: PlacedPile, mesh: FEMesh) -> ServiceProblem:

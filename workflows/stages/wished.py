@@ -17,7 +17,7 @@ from service_fe.solve import run as run_programmes
 from workflows.case import AnyCase, case_text
 from workflows.directory import WISHED, WISHED_SERVICE
 from workflows.manifest import created_by
-from workflows.placed import pile_at_end, service_problem
+from workflows.placed import loaded_in_service, pile_at_end, service_problem
 from workflows.progress import Advance, no_progress, service_observer
 from workflows.stages.serve import settled_notes
 
@@ -36,10 +36,12 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     assert case.service is not None
     placed = pile_at_end(case)
     mesh = placed.mesh(case.box, case.handoff, level_surface(), boundary_depths(case.ground))
-    problem = service_problem(case, placed, mesh)
+    rigid = service_problem(case, placed, mesh)
+    undisturbed = wished_in_place(case.ground, case.interface, rigid, case.handoff)
+    problem, state = loaded_in_service(case, placed, rigid, undisturbed)
     result = run_programmes(
         problem,
-        wished_in_place(case.ground, case.interface, problem, case.handoff),
+        state,
         case.service.programmes,
         service_observer(case, advance),
         model="wished_in_place",
