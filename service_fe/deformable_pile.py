@@ -18,13 +18,18 @@ from handoff.pile_mesh import PileMesh
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground, GroundProfile, soils_of
+from service_fe.inclusion import Inclusion
 from service_fe.interface_forms import NormalsOf
 from service_fe.options import DeformablePile, ServiceNumerics
-from service_fe.problem import Inclusion, ServiceProblem
+from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held
 
-CAP_STIFFNESS = 1e3
-"""Of the layer below the cap, times the size of the head over Young's modulus of the pile."""
+CAP_STIFFNESS = 100.0
+"""Of the layer below the cap, times the size of the head over Young's modulus of the pile.
+
+It gives way as a hundredth of a head's width of pile; a stiffer one would lift the round-off of the
+forces above the tolerance of Newton's method.
+"""
 
 UNLIMITED = 1e30
 """Cohesion in Pa of the layer below the cap: it neither slips nor opens."""

@@ -110,8 +110,8 @@ def facet_geometry(mesh: FEMesh, facets: np.ndarray) -> tuple[np.ndarray, np.nda
 
 def _dofs_of(nodes: np.ndarray, dim: int) -> np.ndarray:
     """Return the displacements dim * node + axis (n, n_nodes * dim) of ``nodes`` (n, n_nodes)."""
-    dofs: np.ndarray = (dim * nodes[:, :, None] + np.arange(dim)).reshape(len(nodes), -1)
-    return dofs
+    dofs: np.ndarray = dim * nodes[:, :, None] + np.arange(dim)
+    return dofs.reshape(len(nodes), nodes.shape[1] * dim)
 
 
 class InterfaceForms:
@@ -151,7 +151,7 @@ class InterfaceForms:
         """Return G (n_i, dim, n_soil + n_motions) of all points."""
         axes = axes_of(self.normals, self.positions)
         own = np.tile(shape, (len(self._dofs), 1))
-        soil = -np.einsum("pki,pa->pkai", axes, own).reshape(*axes.shape[:2], -1)
+        soil = -np.einsum("pki,pa->pkai", axes, own).reshape(*axes.shape[:2], self._dofs.shape[1])
         pile = np.einsum("pki,pij->pkj", axes, rigid_motion(self.positions))
         return np.concatenate([soil, pile], axis=2)
 

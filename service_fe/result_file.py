@@ -33,7 +33,7 @@ RECORDS = {"mesh": FEMesh, "integration": FEIntegrationPoints, "interface": FEIn
 PROGRAMME_RECORDS = {"curve": Curve, "soil": Displacement, "state": FEState}
 """Groups below ``/programmes/<number>``."""
 
-ALONG = {"along": AlongPile}
+ALONG: dict[str, type] = {"along": AlongPile}
 """Group of a programme for a pile in space."""
 
 _PROGRAMME_OF_KIND: dict[str, type[Programme]] = {

@@ -29,9 +29,10 @@ from workflows.verification.references.discs import disc_stiffness
 
 SECTORS = 5
 RADII = (
-    0.0, 0.45, 0.75, 0.9, 0.97, 1.0, 1.03, 1.1, 1.25, 1.6, 2.3, 4.0, 8.0, 20.0, 60.0, 200.0,
+    0.0, 0.45, 0.75, 0.9, 0.965, 0.99, 1.0, 1.01, 1.035, 1.1, 1.25, 1.6, 2.3, 4.0, 8.0, 20.0, 60.0,
+    200.0,
 )  # fmt: skip
-DEPTHS = (0.0, 0.03, 0.1, 0.25, 0.6, 1.3, 3.0, 7.0, 20.0, 60.0, 200.0)
+DEPTHS = (0.0, 0.01, 0.04, 0.11, 0.26, 0.6, 1.3, 3.0, 7.0, 20.0, 60.0, 200.0)
 """Lines of the mesh over the radius of the disc, closest at its edge."""
 
 TOLERANCE = 0.02
