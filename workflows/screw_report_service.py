@@ -31,6 +31,7 @@ from workflows.report_tables import (
     version_table,
 )
 from workflows.report_units import significant
+from workflows.screw_along import along_pile, lateral_programmes
 from workflows.screw_case import ScrewCase
 from workflows.screw_frames import PointCloud
 from workflows.screw_report_ground import pose_of
@@ -173,6 +174,14 @@ def service_html(case: ScrewCase, files: ServiceFiles) -> str:
                 caption("curves"),
             ),
             comparison_table(files),
+            *(
+                figure(
+                    f"along-{name}",
+                    along_pile(files.service, files.wished, name),
+                    f"{spaced(name)}: {caption('along')}",
+                )
+                for name in lateral_programmes(files.service)
+            ),
             "<h3>Convergence</h3>",
             convergence_table(files.summary["convergence"]),
             SERVICE_LIMITS,
