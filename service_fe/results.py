@@ -8,7 +8,7 @@ moment.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple, get_type_hints
 
 import numpy as np
 
@@ -155,6 +155,34 @@ class ServiceResult(NamedTuple):
                 return result
         names = ", ".join(result.programme.name for result in self.programmes)
         raise KeyError(f"there is no programme {name!r}; there are: {names}")
+
+
+def without_pile(result: ServiceResult, n_soils: int) -> ServiceResult:
+    """Return the result on the cells of the ground alone; a deformable pile is the last material.
+
+    ``n_soils`` is the number of materials of the ground.
+    """
+    is_soil = result.programmes[0].state.material < n_soils
+    if is_soil.all():
+        return result
+    per_cell = len(is_soil) // len(result.mesh.cell_nodes)
+    of_points = [
+        name
+        for name, hint in get_type_hints(FEState, include_extras=True).items()
+        if hint.__metadata__[0].shape[0] == "integration_point"
+    ]
+    return result._replace(
+        mesh=result.mesh._replace(cell_nodes=result.mesh.cell_nodes[is_soil[::per_cell]]),
+        integration=FEIntegrationPoints(*(values[is_soil] for values in result.integration)),
+        programmes=tuple(
+            entry._replace(
+                state=entry.state._replace(
+                    **{name: getattr(entry.state, name)[is_soil] for name in of_points}
+                )
+            )
+            for entry in result.programmes
+        ),
+    )
 
 
 class Characteristics(NamedTuple):

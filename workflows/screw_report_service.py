@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 
 from handoff.fe_state_file import FEIntegrationPoints, FEState
 from install_mpm.conventions import Kinematics
+from install_mpm.ground import soils_of
 from install_mpm.state_file import InstalledState
-from service_fe.results import ServiceResult
+from service_fe.results import ServiceResult, without_pile
 from workflows import directory as names
 from workflows.interactive import interactive
 from workflows.interactive_curves import service_curves
@@ -68,10 +69,11 @@ def read_service_files(directory: Path, case: ScrewCase) -> ServiceFiles:
     StateFileError, DirectoryError
         If a file is missing or damaged, or belongs to another case.
     """
+    n_soils = len(soils_of(case.ground))
     return ServiceFiles(
         handed_off=read_checked(directory, names.HANDED_OFF, case),
-        service=read_checked(directory, names.SERVICE, case),
-        wished=read_checked(directory, names.WISHED_SERVICE, case),
+        service=without_pile(read_checked(directory, names.SERVICE, case), n_soils),
+        wished=without_pile(read_checked(directory, names.WISHED_SERVICE, case), n_soils),
         certificate=read_json(directory / names.CERTIFICATE, "screwpile handoff"),
         summary=read_json(directory / names.SUMMARY, "screwpile compare"),
     )

@@ -111,9 +111,9 @@ SERVICE_CAPTIONS = {
         at a displacement of 0.1 diameters of the largest plate. Cross: where initial and final
         tangent meet.""",
     "along": """what the pile feels along its axis at the end, in the direction of the load:
-        deflection, force p of the soil per length against the load, and of a deformable pile shear force and
-        bending moment from the stress in its sections. Right: p over the deflection y at some
-        levels, darker with the depth. All are changes since the start of the programme.""",
+        deflection, force p of the soil per length against the load, and of a deformable pile shear
+        force and bending moment from the stress in its sections. Right: p over the deflection y at
+        some levels, darker with the depth. All are changes since the start of the programme.""",
 }
 
 SERVICE_LIMITS = """

@@ -1,6 +1,6 @@
 """PD9: the interface of the service stage under cycles of relative displacement, in space.
 
-A rigid plate slides on a block whose nodes are held, to and fro in an oblique direction in its
+A rigid plate slides on a block whose nodes are held, back and forth in an oblique direction in its
 plane, so that both tangential components take part.  The work of a cycle is that of the force on
 the plate; its steps end at the corners of the loop, where the path of the force bends.
 """
@@ -39,7 +39,7 @@ def pd9(
     u_a: Annotated[float, Unit("m")] = 5e-3,
     cycles: int = 10,
 ) -> Outcome:
-    """A plate moves to and fro by u_a: 4 tau_y (u_a - tau_y / k_s) per cycle and area are lost.
+    """A plate moves back and forth by u_a: 4 tau_y (u_a - tau_y / k_s) per cycle and area are lost.
 
     The loop of an interface with shear stiffness k_s and strength tau_y is closed.
     """
