@@ -105,10 +105,10 @@ CHANGED = {
 }
 """Physical parameters, and the numerical ones that make a slow problem short."""
 
-REDUCED = {"AMPLE-COLLAPSE", "PB6", "PB7"}
+REDUCED = {"AMPLE-COLLAPSE", "PB6", "PB6-FE", "PB7"}
 """Problems that are too coarse here, or end too early, for their checks."""
 
-WITHOUT_ITERATIONS = {"PA4", "PA4-3D", "PC1", "PE1", "PE7", "PE8"}
+WITHOUT_ITERATIONS = {"PA4", "PA4-3D", "PC1", "PE1", "PE7", "PE8", "PF1", "PF2"}
 """Problems whose motion is given at every node or component: nothing is left to iterate."""
 
 

@@ -25,6 +25,7 @@ from workflows.verification.quarter_ground import (
     quarter_mesh,
     quarter_solid,
     supports,
+    surface_within,
 )
 from workflows.verification.references.piles import lateral_head
 from workflows.verification.solid_boundary import nodal_areas
@@ -104,7 +105,7 @@ def _free_head(
     load: float,
 ) -> tuple[Step, float, float]:
     """Return the step, and mean displacement in m and rotation in rad of the head."""
-    areas = _head_areas(mesh, radius)
+    areas = nodal_areas(mesh, surface_within(mesh, radius))
     force = np.zeros_like(mesh.nodes)
     force[:, 0] = load / QUARTERS * areas / areas.sum()
     problem = _problem(mesh, soils, supports(mesh, "odd", "even"))
@@ -119,8 +120,7 @@ def _fixed_head(
     mesh: FEMesh, soils: tuple[HenckyElastic, HenckyElastic], radius: float, length: float
 ) -> tuple[Step, float]:
     """Return the step, and the force in N per m of displacement of a head that cannot rotate."""
-    is_head = _head_areas(mesh, radius) != 0.0
-    is_head |= (np.hypot(*mesh.nodes[:, :2].T) < radius * (1.0 + 1e-9)) & (mesh.nodes[:, 2] == 0.0)
+    is_head = np.unique(mesh.facet_nodes[surface_within(mesh, radius)])
     is_fixed = supports(mesh, "odd", "even")
     is_fixed[is_head] = True
     motion = np.zeros_like(mesh.nodes)
@@ -129,13 +129,6 @@ def _fixed_head(
     step = _solve(problem, radius, length, np.zeros_like(motion), motion)
     force = QUARTERS * float(step.support_reaction[is_head, 0].sum())
     return step, force / (1e-3 * radius)
-
-
-def _head_areas(mesh: FEMesh, radius: float) -> np.ndarray:
-    """Return the shares (node,) in m^2 of the head's section."""
-    middle = mesh.nodes[mesh.facet_nodes[:, :3]].mean(axis=1)
-    on_top = middle[:, 2] > -1e-9 * radius
-    return nodal_areas(mesh, np.flatnonzero(on_top & (np.hypot(*middle[:, :2].T) < radius)))
 
 
 PROBLEM = Problem("PD5", "Head of a long elastic pile, lateral", pd5, is_quick=False)

@@ -74,3 +74,14 @@ def supports(mesh: FEMesh, in_x: Parity, in_y: Parity) -> np.ndarray:
     outer = np.isin(mesh.facet_tag, [FacetTag.SIDE, FacetTag.BOTTOM])
     is_fixed[np.unique(mesh.facet_nodes[outer])] = True
     return is_fixed
+
+
+def surface_within(mesh: FEMesh, radius: float) -> np.ndarray:
+    """Return the facets (n,) of the surface inside the polygon whose corners are at ``radius`` m.
+
+    By their vertices: mid-sides of the next polygon may be nearer to the axis than these corners.
+    """
+    slack = 1e-9 * np.ptp(mesh.nodes)
+    vertices = mesh.nodes[mesh.facet_nodes[:, :3]]
+    is_inside = np.hypot(vertices[:, :, 0], vertices[:, :, 1]) < radius + slack
+    return np.flatnonzero((is_inside & (vertices[:, :, 2] > -slack)).all(axis=1))

@@ -24,6 +24,7 @@ from workflows.verification.quarter_ground import (
     quarter_mesh,
     quarter_solid,
     supports,
+    surface_within,
 )
 from workflows.verification.references.discs import disc_stiffness
 
@@ -78,8 +79,8 @@ def pd1(
     polygon = R * equal_area(4 * SECTORS)
     solid = quarter_solid(polygon * np.array(RADII), R * np.array(DEPTHS), SECTORS)
     mesh = quarter_mesh(solid)
-    slack = 1e-9 * R
-    on_disc = (np.hypot(*mesh.nodes[:, :2].T) < polygon + slack) & (mesh.nodes[:, 2] > -slack)
+    on_disc = np.zeros(len(mesh.nodes), dtype=bool)
+    on_disc[np.unique(mesh.facet_nodes[surface_within(mesh, polygon)])] = True
     checks, histories = [], []
     for load, reference in zip(LOADS, references, strict=True):
         is_fixed = supports(mesh, load.in_x, load.in_y)

@@ -29,7 +29,7 @@ from workflows.verification.body import ProblemNotSolvedError
 from workflows.verification.problem import Outcome, Problem, Series, relative
 from workflows.verification.strip_footing_fe import EXACT, footing_mesh
 
-SIZE, POINT_SIZE, SIZE_FAR = 0.02, 0.013, 0.35
+SIZE, POINT_SIZE, SIZE_FAR = 0.01, 0.0065, 0.35
 """Cells of the mesh, and of the one whose integration points are the material points, over B."""
 
 SETTLEMENT, STEPS = 40.0, 40
