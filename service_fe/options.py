@@ -148,10 +148,7 @@ class ServiceNumerics:
 
 @dataclass(frozen=True)
 class ServiceOptions:
-    """The programmes of the service stage, in order, and its numerics.
-
-    With ``[service.pile]`` (youngs_modulus, poissons_ratio, contact) the pile is deformable.
-    """
+    """The programmes of the service stage; [service.pile] (youngs_modulus, ...) makes it elastic."""
 
     programmes: tuple[Programme, ...]
     numerics: ServiceNumerics = ServiceNumerics()
