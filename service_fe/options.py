@@ -148,7 +148,7 @@ class ServiceNumerics:
 
 @dataclass(frozen=True)
 class ServiceOptions:
-    """The programmes of the service stage; [service.pile] (youngs_modulus, ...) makes it elastic."""
+    """The programmes of the service stage; [service.pile] (youngs_modulus, ...): elastic pile."""
 
     programmes: tuple[Programme, ...]
     numerics: ServiceNumerics = ServiceNumerics()

@@ -29,13 +29,13 @@ from workflows.verification.body import ProblemNotSolvedError
 from workflows.verification.problem import Outcome, Problem, Series, relative
 from workflows.verification.strip_footing_fe import EXACT, footing_mesh
 
-SIZE, POINT_SIZE, SIZE_FAR = 0.01, 0.0065, 0.35
+SIZE, POINT_SIZE, SIZE_FAR = 0.01, 0.005, 0.35
 """Cells of the mesh, and of the one whose integration points are the material points, over B."""
 
 SETTLEMENT, STEPS = 40.0, 40
 """Settlement E / (s_u B) at the end, and steps to it."""
 
-NEIGHBOURS = 12
+NEIGHBOURS = 8
 
 
 class Footing(NamedTuple):
