@@ -39,6 +39,8 @@ class FacetTag(IntEnum):
 
     PILE_BASE = 0
     PILE_SHAFT = 1
+    PILE_HEAD = 1000
+    """Section of a deformable pile that a rigid cap holds; no surface of the soil."""
     SYMMETRY = -1
     SIDE = -2
     BOTTOM = -3

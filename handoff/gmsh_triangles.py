@@ -1,4 +1,4 @@
-"""gmsh as a function from outline and edge length to triangles: repeatable, quiet, no traces."""
+"""gmsh as a function from outline and edge length to cells: repeatable, quiet, no traces."""
 
 from __future__ import annotations
 
@@ -24,6 +24,9 @@ OPTIONS = {
     "Mesh.ElementOrder": 1.0,
 }
 """One thread and one seed: the same outline gives the same mesh; 6 is Frontal-Delaunay."""
+
+LINEAR = {2: 2, 3: 4}
+"""gmsh's number of the triangle and the tetrahedron with straight edges."""
 
 
 class MeshError(RuntimeError):
@@ -62,16 +65,46 @@ def fill_polygons(
             raise MeshError(f"gmsh could not mesh the ground ({error})") from error
         finally:
             gmsh.model.mesh.removeSizeCallback()
-        return _triangles(gmsh)
+        return _cells(gmsh, 2)
 
 
-def _triangles(gmsh: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Return vertices and triangles of the current model, numbered from zero in gmsh's order."""
+def fill_solid(
+    places: np.ndarray, triangles: np.ndarray, size: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return vertices (n, 3) in m and tetrahedra (m, 4) int64 in a closed surface, which is kept.
+
+    ``triangles`` (k, 3) on ``places`` (l, 3) have their normals outward; ``size`` in m is the
+    wanted edge length inside.  The places are the first vertices.
+
+    Raises
+    ------
+    MeshError
+        If gmsh cannot be loaded, or fails.
+    """
+    with _own_model() as gmsh:
+        surface = gmsh.model.addDiscreteEntity(2)
+        tags = np.arange(1, len(places) + 1)
+        gmsh.model.mesh.addNodes(2, surface, tags, places.ravel())
+        gmsh.model.mesh.addElementsByType(surface, 2, [], (triangles + 1).ravel())
+        gmsh.model.geo.addVolume([gmsh.model.geo.addSurfaceLoop([surface])])
+        gmsh.model.geo.synchronize()
+        gmsh.model.mesh.setSizeCallback(lambda *_place: size)
+        try:
+            gmsh.model.mesh.generate(3)
+        except Exception as error:  # gmsh raises bare exceptions
+            raise MeshError(f"gmsh could not mesh the pile ({error})") from error
+        finally:
+            gmsh.model.mesh.removeSizeCallback()
+        return _cells(gmsh, 3)
+
+
+def _cells(gmsh: Any, dim: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return vertices (n, dim) and simplices of the current model, from zero in gmsh's order."""
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     order = np.argsort(tags)
-    _, triangle_tags = gmsh.model.mesh.getElementsByType(2)
-    triangles = np.searchsorted(tags[order], triangle_tags).reshape(-1, 3).astype(np.int64)
-    return coordinates.reshape(-1, 3)[order, :2].copy(), triangles
+    _, cell_tags = gmsh.model.mesh.getElementsByType(LINEAR[dim])
+    cells = np.searchsorted(tags[order], cell_tags).reshape(-1, dim + 1).astype(np.int64)
+    return coordinates.reshape(-1, 3)[order, :dim].copy(), cells
 
 
 @contextmanager

@@ -151,6 +151,7 @@ class AxisymmetricForms:
         values = np.bincount(
             pattern.slots[0].ravel(), blocks.ravel(), minlength=len(pattern.indices)
         )
+        self.matrix.zeroEntries()  # also those between twins, which are not in the pattern
         self.matrix.setValuesCSR(pattern.indptr, pattern.indices, values)
         self.matrix.assemble()
         return self.matrix

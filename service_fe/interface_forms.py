@@ -1,7 +1,7 @@
 """Interface between pile and soil in the finite-element model: zero-thickness quadratic elements.
 
-The soil side is a facet of a quadratic triangle or tetrahedron, the pile side moves rigidly.  With
-the relative displacement
+The soil side is a facet of a quadratic triangle or tetrahedron, the pile side moves rigidly or, on
+a deformable pile, has nodes of its own.  With the relative displacement
 
     w = G (u, q) ,   G = [-N, T] in local axes (tangential, normal), pile minus soil,
 
@@ -60,7 +60,7 @@ class InterfaceStiffness(NamedTuple):
     """Blocks of the stiffness that couple soil (s) and pile (p)."""
 
     dofs: np.ndarray
-    """Displacements dim * node + axis (n_element, n_soil) of the soil side."""
+    """Displacements dim * node + axis (n_element, n_soil) of the meshed side, or sides."""
     soil: np.ndarray
     """K_ss (n_element, n_soil, n_soil)."""
     soil_pile: np.ndarray
@@ -108,10 +108,18 @@ def facet_geometry(mesh: FEMesh, facets: np.ndarray) -> tuple[np.ndarray, np.nda
     return 0.5 * twice_area, normal / twice_area[:, None]
 
 
+def _dofs_of(nodes: np.ndarray, dim: int) -> np.ndarray:
+    """Return the displacements dim * node + axis (n, n_nodes * dim) of ``nodes`` (n, n_nodes)."""
+    dofs: np.ndarray = dim * nodes[:, :, None] + np.arange(dim)
+    return dofs.reshape(len(nodes), nodes.shape[1] * dim)
+
+
 class InterfaceForms:
     """Discrete interface on the pile's facets of a mesh; there may be none.
 
-    ``normals`` gives the exact normals of the pile's parts.
+    ``normals`` gives the exact normals of the pile's parts.  ``twin`` (node,) is the node on the
+    pile's side of a node of the soil; facets whose nodes have none (-1) face a rigid pile, as all
+    do without it.
     """
 
     def __init__(
@@ -119,12 +127,12 @@ class InterfaceForms:
         mesh: FEMesh,
         kinematics: Kinematics = Kinematics.PLANE_STRAIN,
         normals: NormalsOf = flat_normals,
+        twin: np.ndarray | None = None,
     ) -> None:
         facets, dim = pile_facets(mesh), mesh.nodes.shape[1]
         nodes = mesh.facet_nodes[facets]
         shape, weights = facet_rule(dim)
         self.n_dofs, self.n_points = mesh.nodes.size, len(weights)
-        self.n_soil = nodes.shape[1] * dim
         self.positions = np.einsum("qa,fai->fqi", shape, mesh.nodes[nodes]).reshape(-1, dim)
         self.parts = np.repeat(mesh.facet_tag[facets], len(weights))
         self.normals = normals(self.parts, self.positions)
@@ -132,17 +140,33 @@ class InterfaceForms:
         is_plane = of_facet is None
         self.facet_normals = self.normals if is_plane else np.repeat(of_facet, len(weights), axis=0)
         self.areas = np.outer(sizes, weights).ravel() * width(self.positions, kinematics)
-        self._dofs = (dim * nodes[:, :, None] + np.arange(dim)).reshape(-1, self.n_soil)
+        self._dofs = _dofs_of(nodes, dim)
+        self._relative = self._against_rigid_pile(shape)
+        if twin is not None:
+            self._dofs, self._relative = self._against_twins(nodes, twin)
+        self.n_soil = self._dofs.shape[1]
         self._point_dofs = np.repeat(self._dofs, len(weights), axis=0)
-        self._relative = self._relative_displacement_matrices(shape)
 
-    def _relative_displacement_matrices(self, shape: np.ndarray) -> np.ndarray:
+    def _against_rigid_pile(self, shape: np.ndarray) -> np.ndarray:
         """Return G (n_i, dim, n_soil + n_motions) of all points."""
         axes = axes_of(self.normals, self.positions)
         own = np.tile(shape, (len(self._dofs), 1))
-        soil = -np.einsum("pki,pa->pkai", axes, own).reshape(*axes.shape[:2], self.n_soil)
+        soil = -np.einsum("pki,pa->pkai", axes, own).reshape(*axes.shape[:2], self._dofs.shape[1])
         pile = np.einsum("pki,pij->pkj", axes, rigid_motion(self.positions))
         return np.concatenate([soil, pile], axis=2)
+
+    def _against_twins(self, nodes: np.ndarray, twin: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return displacements and G of both sides; a facet (n, n_nodes) without twins keeps its G.
+
+        It then has its own nodes on the other side as well, with G zero.
+        """
+        is_rigid = (twin[nodes] < 0).all(axis=1)
+        other = np.where(is_rigid[:, None], nodes, twin[nodes])
+        soil, rigid = np.split(self._relative, [self._dofs.shape[1]], axis=2)
+        at_point = np.repeat(is_rigid, self.n_points)[:, None, None]
+        dofs = np.hstack([self._dofs, _dofs_of(other, self.facet_normals.shape[1])])
+        relative = [soil, np.where(at_point, 0.0, -soil), np.where(at_point, rigid, 0.0)]
+        return dofs, np.concatenate(relative, axis=2)
 
     def relative_displacement(self, displacement: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Return pile minus soil (n_i, dim), local axes.

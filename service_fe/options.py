@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from annotated_types import Ge, Gt, Le, MinLen
+from annotated_types import Ge, Gt, Le, Lt, MinLen
 
 from install_mpm.conventions import Unit
 
@@ -123,6 +123,17 @@ IN_THE_PLANE = (Release, Displace)
 
 
 @dataclass(frozen=True)
+class DeformablePile:
+    """Elasticity of a pile that is meshed inside; without it the pile is rigid."""
+
+    youngs_modulus: Annotated[float, Unit("Pa"), Gt(0)]
+    """Of the solid section: that of a tube is E of the steel times its share of EI."""
+    poissons_ratio: Annotated[float, Ge(0), Lt(0.5)] = 0.3
+    contact: Literal["interface", "bonded"] = "interface"
+    """The interface of the rigid pile, or the soil sticks to the pile."""
+
+
+@dataclass(frozen=True)
 class ServiceNumerics:
     """Numerical parameters of the service stage; the defaults are explained in docs/method.md."""
 
@@ -137,7 +148,9 @@ class ServiceNumerics:
 
 @dataclass(frozen=True)
 class ServiceOptions:
-    """The programmes of the service stage, in order, and its numerics."""
+    """The programmes of the service stage; [service.pile] (youngs_modulus, ...): elastic pile."""
 
     programmes: tuple[Programme, ...]
     numerics: ServiceNumerics = ServiceNumerics()
+    pile: DeformablePile | None = None
+    """Without it the pile is rigid."""

@@ -13,7 +13,7 @@ from handoff.fe_mesh import FacetTag, FEMesh
 from handoff.fe_state_file import FEState
 from handoff.geostatic import geostatic_state
 from handoff.tensor_arrays import six_vectors
-from install_mpm.constitutive import coulomb_interface, dispatch
+from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import (
@@ -23,6 +23,7 @@ from install_mpm.ground import (
     unit_weights,
 )
 from install_mpm.pile import WHOLE_PILE
+from service_fe.inclusion import Inclusion, interface_parameters, open_pattern
 from service_fe.interface_forms import InterfaceForms, NormalsOf, flat_normals
 from service_fe.kinematics import FORMS
 from service_fe.linear_solver import TangentSolver
@@ -71,6 +72,9 @@ class ServiceProblem:
         axisymmetry the pile may move along its axis only.
     normals
         Exact normals of the pile; by default those of a flat-ended one.
+    inclusion
+        A deformable pile in the mesh, see ``deformable_pile``; what is called pile otherwise is
+        then the cap on its head.
 
     Raises
     ------
@@ -88,23 +92,40 @@ class ServiceProblem:
         is_fixed: np.ndarray | None = None,
         kinematics: Kinematics = Kinematics.PLANE_STRAIN,
         normals: NormalsOf = flat_normals,
+        inclusion: Inclusion | None = None,
     ) -> None:
         self._soil = FORMS[kinematics](mesh)
-        self.mesh, self.ground = mesh, ground
+        self.mesh, self.ground, self.inclusion = mesh, ground, inclusion
         self.numerics = numerics or ServiceNumerics()
         self.dim = mesh.nodes.shape[1]
         self.whole_body = WHOLE_PILE[kinematics]
-        self._interface = InterfaceForms(mesh, kinematics, normals)
+        twin = None if inclusion is None else inclusion.twin
+        self._interface = InterfaceForms(mesh, kinematics, normals, twin)
+        if twin is not None:
+            open_pattern(self._soil.matrix)
+        soils = soils_of(ground)
         strength = undrained_shear_strength(ground, self._interface.positions[:, -1])
         self.model = Model(
             soil=self._soil,
             interface=self._interface,
             solver=TangentSolver(self._soil.matrix, self._soil.row_of_dof),
-            materials=dispatch.pack(soils_of(ground)),
-            interface_parameters=coulomb_interface.pack(interface, strength),
+            materials=dispatch.pack(soils if inclusion is None else (*soils, inclusion.law)),
+            interface_parameters=interface_parameters(
+                interface, inclusion, strength, self._interface.parts
+            ),
             is_fixed=roller_supports(mesh) if is_fixed is None else is_fixed,
             pile_weight=-pile_weight * axial(self.dim),
             numerics=self.numerics,
+        )
+
+    @property
+    def _unit_weights(self) -> np.ndarray:
+        """Unit weights (n_materials,) in N/m^3."""
+        of_ground = unit_weights(self.ground)
+        return (
+            of_ground
+            if self.inclusion is None
+            else np.append(of_ground, self.inclusion.unit_weight)
         )
 
     @property
@@ -159,7 +180,7 @@ class ServiceProblem:
 
     def gravity(self, state: FEState) -> np.ndarray:
         """Return the nodal forces (node, dim) in N of the weight of the soils of ``state``."""
-        return self._soil.weight(unit_weights(self.ground)[state.material])
+        return self._soil.weight(self._unit_weights[state.material])
 
     def internal_force(self, state: FEState) -> np.ndarray:
         """Return the nodal forces (node, dim) in N of stress and interface of ``state``."""
@@ -174,7 +195,7 @@ class ServiceProblem:
         ValueError
             If the soil has no weight.
         """
-        weight = unit_weights(self.ground)[state.material] @ self.integration_volumes
+        weight = self._unit_weights[state.material] @ self.integration_volumes
         if weight <= 0.0:
             raise ValueError(
                 "the out-of-balance force is measured by the weight of the soil, which is zero;"

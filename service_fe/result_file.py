@@ -15,16 +15,26 @@ from install_mpm.record import StateFileError, read_record, write_record
 from install_mpm.seal import new_state_file, open_state_file
 from install_mpm.state_file import read_header, write_header
 from service_fe.options import Cycles, Displace, Lateral, Load, Programme, Release, Rotate
-from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
+from service_fe.results import (
+    AlongPile,
+    Curve,
+    Displacement,
+    ModelName,
+    ProgrammeResult,
+    ServiceResult,
+)
 
 FORMAT = "screwpile-service-result"
-VERSION = 3
+VERSION = 4
 
 RECORDS = {"mesh": FEMesh, "integration": FEIntegrationPoints, "interface": FEInterfacePoints}
 """Groups of the file that all programmes share."""
 
 PROGRAMME_RECORDS = {"curve": Curve, "soil": Displacement, "state": FEState}
 """Groups below ``/programmes/<number>``."""
+
+ALONG: dict[str, type] = {"along": AlongPile}
+"""Group of a programme for a pile in space."""
 
 _PROGRAMME_OF_KIND: dict[str, type[Programme]] = {
     kind.kind: kind for kind in (Release, Displace, Lateral, Rotate, Load, Cycles)
@@ -45,6 +55,8 @@ def write_service_result(path: Path, result: ServiceResult, created_by: str) -> 
             group.attrs["programme"] = json.dumps(asdict(programme_result.programme))
             for name in PROGRAMME_RECORDS:
                 write_record(group.create_group(name), getattr(programme_result, name))
+            if programme_result.along is not None:
+                write_record(group.create_group("along"), programme_result.along)
 
 
 def read_service_result(path: Path) -> ServiceResult:
@@ -67,6 +79,7 @@ def read_service_result(path: Path) -> ServiceResult:
             ProgrammeResult(
                 programme=_read_programme(path, group),
                 **_read_records(path, group, PROGRAMME_RECORDS),
+                **_read_records(path, group, ALONG if "along" in group else {}),
             )
             for _, group in sorted(file["programmes"].items())
         )

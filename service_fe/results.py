@@ -8,7 +8,7 @@ moment.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple, get_type_hints
 
 import numpy as np
 
@@ -81,6 +81,45 @@ class Displacement(NamedTuple):
     ]
 
 
+def _along(unit: str, doc: str, *, is_lateral: bool = False, may_be_nan: bool = True) -> Field:
+    axes = ("load_step", "level", "horizontal") if is_lateral else ("load_step", "level")
+    return Field(axes, unit, doc, may_be_nan=may_be_nan)
+
+
+class AlongPile(NamedTuple):
+    """The pile along its axis in each step of a programme; whole pile, a wall per metre run."""
+
+    height: Annotated[np.ndarray, Field(("level",), "m", "z of the levels, from the tip upward")]
+    reaction: Annotated[
+        np.ndarray,
+        _along(
+            "N/m",
+            "horizontal force of the soil on the pile per length; NaN if bonded",
+            is_lateral=True,
+        ),
+    ]
+    deflection: Annotated[
+        np.ndarray,
+        _along(
+            "m",
+            "horizontal displacement of the pile since the programme's start",
+            is_lateral=True,
+            may_be_nan=False,
+        ),
+    ]
+    normal_force: Annotated[
+        np.ndarray, _along("N", "normal force, tension positive; NaN in a rigid pile")
+    ]
+    shear_force: Annotated[
+        np.ndarray, _along("N", "shear force; NaN in a rigid pile", is_lateral=True)
+    ]
+    bending_moment: Annotated[
+        np.ndarray,
+        _along("N m", "bending moment, tension at positive x or y; NaN in a rigid pile",
+               is_lateral=True),
+    ]  # fmt: skip
+
+
 class ProgrammeResult(NamedTuple):
     """What a programme did to the pile and to the ground."""
 
@@ -89,6 +128,8 @@ class ProgrammeResult(NamedTuple):
     soil: Displacement
     state: FEState
     """State of the ground at the end."""
+    along: AlongPile | None = None
+    """None but for a pile in space."""
 
 
 class ServiceResult(NamedTuple):
@@ -114,6 +155,34 @@ class ServiceResult(NamedTuple):
                 return result
         names = ", ".join(result.programme.name for result in self.programmes)
         raise KeyError(f"there is no programme {name!r}; there are: {names}")
+
+
+def without_pile(result: ServiceResult, n_soils: int) -> ServiceResult:
+    """Return the result on the cells of the ground alone; a deformable pile is the last material.
+
+    ``n_soils`` is the number of materials of the ground.
+    """
+    is_soil = result.programmes[0].state.material < n_soils
+    if is_soil.all():
+        return result
+    per_cell = len(is_soil) // len(result.mesh.cell_nodes)
+    of_points = [
+        name
+        for name, hint in get_type_hints(FEState, include_extras=True).items()
+        if hint.__metadata__[0].shape[0] == "integration_point"
+    ]
+    return result._replace(
+        mesh=result.mesh._replace(cell_nodes=result.mesh.cell_nodes[is_soil[::per_cell]]),
+        integration=FEIntegrationPoints(*(values[is_soil] for values in result.integration)),
+        programmes=tuple(
+            entry._replace(
+                state=entry.state._replace(
+                    **{name: getattr(entry.state, name)[is_soil] for name in of_points}
+                )
+            )
+            for entry in result.programmes
+        ),
+    )
 
 
 class Characteristics(NamedTuple):

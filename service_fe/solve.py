@@ -12,6 +12,7 @@ import numpy as np
 
 from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEState
 from install_mpm.newton import convergence_order
+from service_fe.along_pile import Recorder
 from service_fe.load_step import Step, Unknowns
 from service_fe.loading import (
     EQUILIBRATED,
@@ -145,6 +146,8 @@ def run_programme(
     rows = [_first_row(problem, steps[0].mode, load)]
     displacement = np.zeros_like(problem.mesh.nodes)
     guess, size = None, 0.0
+    along = Recorder(problem)
+    along.add(state, displacement, rows[0].motion)
     for number, imposed in enumerate(steps, start=1):
         guess = guess.scaled(imposed.size / size) if guess is not None and size else None
         try:
@@ -158,8 +161,11 @@ def run_programme(
         guess = None if taken.settled else taken.increment
         displacement += taken.increment.displacement
         rows.append(_row(problem, rows[-1], imposed.mode, taken))
+        along.add(state, displacement, rows[-1].motion)
         observe(ServiceProgress(programme.name, number, len(steps), *rows[-1][:4]))
-    return ProgrammeResult(programme, _curve(rows), Displacement(displacement), state)
+    return ProgrammeResult(
+        programme, _curve(rows), Displacement(displacement), state, along.result()
+    )
 
 
 def advance(

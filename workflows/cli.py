@@ -43,17 +43,26 @@ Resume = Annotated[
     bool, typer.Option("--resume", help="Continue an interrupted installation from its checkpoint.")
 ]
 
+Accept = Annotated[
+    bool,
+    typer.Option("--accept-uncertified", help="Load the pile though the certificate has failed."),
+]
+
 
 @app.command()
 def run(
-    case: CaseFile, output: Output = None, overrides: Overrides = None, resume: Resume = False
+    case: CaseFile,
+    output: Output = None,
+    overrides: Overrides = None,
+    resume: Resume = False,
+    accept: Accept = False,
 ) -> None:
     """Run all stages; those whose inputs did not change are skipped."""
     from workflows.runner import run_case
 
     loaded, directory = _load(case, output, overrides)
     with _resumable(directory):
-        run_case(loaded, directory, resume=resume)
+        run_case(loaded, directory, resume=resume, accept_uncertified=accept)
 
 
 @app.command()
@@ -77,11 +86,11 @@ def handoff(directory: Results) -> None:
 
 
 @app.command()
-def serve(directory: Results) -> None:
+def serve(directory: Results, accept: Accept = False) -> None:
     """Stage 3: load the pile in service, from handed_off.h5; writes service.h5."""
     from workflows.runner import run_from_files
 
-    run_from_files("serve", directory)
+    run_from_files("serve", directory, accept_uncertified=accept)
 
 
 @app.command()

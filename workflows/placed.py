@@ -13,6 +13,7 @@ from workflows.screw_theory import driven
 
 if TYPE_CHECKING:
     from handoff.fe_mesh import FEMesh
+    from handoff.fe_state_file import FEState
     from install_mpm.state_file import InstalledState
     from service_fe.problem import ServiceProblem
 
@@ -45,6 +46,32 @@ def pile_where_rig_stopped(case: ScrewCase, installed: InstalledState) -> Placed
     history = driven(installed.history)
     depth = case.pile.embedment + float(history.penetration[-1])
     return placed_pile(case, depth, float(history.rotation[-1]))
+
+
+def loaded_in_service(
+    case: AnyCase, placed: PlacedPile, problem: ServiceProblem, state: FEState
+) -> tuple[ServiceProblem, FEState]:
+    """Return model and state of the pile in service: rigid as handed over, or deformable.
+
+    ``problem`` and ``state`` are those of the rigid pile.
+
+    Raises
+    ------
+    MeshError
+        If a deformable pile cannot be meshed.
+    """
+    from handoff.pile_mesh import mesh_of_pile
+    from service_fe.deformable_pile import deformable_model
+
+    assert case.service is not None
+    if case.service.pile is None:
+        return problem, state
+    model = deformable_model(
+        problem.mesh, mesh_of_pile(problem.mesh), case.service.pile, case.ground, case.interface,
+        placed.weight(case.ground.water_table), kinematics=placed.kinematics,
+        normals=placed.normals, numerics=case.service.numerics,
+    )  # fmt: skip
+    return model.problem, model.start(state)
 
 
 def service_problem(case: AnyCase, placed: PlacedPile, mesh: FEMesh) -> ServiceProblem:

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from handoff.fe_state_file import HandedOffState
+from install_mpm.ground import soils_of
 from install_mpm.state_file import InstalledState
-from service_fe.results import ServiceResult
+from service_fe.results import ServiceResult, without_pile
 from workflows import directory as names
 from workflows.case import Case, case_text
 from workflows.errors import DirectoryError
@@ -45,13 +46,14 @@ def read_results(directory: Path) -> Results:
     case = case_for(directory, names.INSTALLED)
     if not isinstance(case, Case):
         raise DirectoryError(f"{directory} holds a screw pile; run `screwpile report` on it")
+    n_soils = len(soils_of(case.ground))
     return Results(
         case=case,
         case_text=case_text(case),
         installed=read_checked(directory, names.INSTALLED, case),
         handed_off=read_checked(directory, names.HANDED_OFF, case),
-        service=read_checked(directory, names.SERVICE, case),
-        wished=read_checked(directory, names.WISHED_SERVICE, case),
+        service=without_pile(read_checked(directory, names.SERVICE, case), n_soils),
+        wished=without_pile(read_checked(directory, names.WISHED_SERVICE, case), n_soils),
         certificate=read_json(directory / names.CERTIFICATE, "screwpile handoff"),
         summary=read_json(directory / names.SUMMARY, "screwpile compare"),
     )

@@ -15,6 +15,7 @@ from workflows import (
     report_tables,
 )
 from workflows.case import Case
+from workflows.certified import warning_html
 from workflows.interactive import interactive
 from workflows.report_data import Results
 from workflows.report_html import code, details, figure
@@ -46,13 +47,7 @@ def sections(results: Results) -> list[Section]:
 
 def results_html(results: Results) -> str:
     """Return cards, failed checks and the headline table."""
-    n_failed = sum(not figure["is_met"] for figure in results.certificate.values())
-    warning = ""
-    if n_failed:
-        warning = (
-            f'<p class="warning">Checks of the certificate that failed: {n_failed}. Look at '
-            '<a href="#handoff">Hand-over</a> before using these results.</p>'
-        )
+    warning = warning_html(results.certificate)
     note = (
         "<p>Ratio: installed over wished in place. B is the pile's width. Downward displacement "
         "and load are positive, so uplift is negative.</p>"

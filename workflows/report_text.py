@@ -66,9 +66,10 @@ LIMITS = """
 cyclic degradation. Strength does not change by remoulding.</li>
 <li>The installation starts with a pile that is wished in place at its first depth; only the
 penetration that is modelled disturbs the ground.</li>
-<li>The pile is rigid. Unless the case gives the interface friction, it is bonded in the normal
-direction, so that suction can act in uplift; its adhesion is that of the undisturbed ground at
-the level of the pile.</li>
+<li>The pile is rigid; with <code>[service.pile]</code> it is elastic in service.</li>
+<li>Unless the case gives the interface friction, it is bonded in the normal direction, so that
+suction can act in uplift; its adhesion is that of the undisturbed ground at the level of the
+pile.</li>
 <li>The service stage takes small strains: displacements beyond about a tenth of the pile's width
 are outside its range.</li>
 <li>One mesh gives one answer. The error of the mesh is known only after the case has been run on

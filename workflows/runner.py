@@ -9,6 +9,7 @@ from pathlib import Path
 
 from workflows import directory as names
 from workflows.case import AnyCase, sections_text
+from workflows.certified import check_certified
 from workflows.directory import check_ownership, claim
 from workflows.errors import CaseError, DirectoryError
 from workflows.manifest import (
@@ -248,15 +249,37 @@ def run_stage(stage: Stage, case: AnyCase, directory: Path, reporter: Reporter) 
     write_manifest(directory, manifest)
 
 
+def check_before(
+    stage: Stage, case: AnyCase, directory: Path, reporter: Reporter, *, accept: bool
+) -> None:
+    """Check before the service stage that the hand-over is certified, or its failure accepted.
+
+    Raises
+    ------
+    DirectoryError
+        If it is neither; the message names the rows that failed.
+    """
+    if stage.name != "serve":
+        return
+    for remark in check_certified(directory, case, accept=accept):
+        reporter.say(f"{'':<9} {remark}")
+
+
 def run_case(
-    case: AnyCase, directory: Path, reporter: Reporter | None = None, *, resume: bool = False
+    case: AnyCase,
+    directory: Path,
+    reporter: Reporter | None = None,
+    *,
+    resume: bool = False,
+    accept_uncertified: bool = False,
 ) -> None:
     """Run all stages in order; those whose inputs did not change are skipped.
 
     Raises
     ------
     DirectoryError, StateFileError
-        Before anything runs, if ``directory`` holds another case's files or damaged ones.
+        Before anything runs, if ``directory`` holds another case's files or damaged ones; before
+        the service stage, if the certificate has failed and this is not accepted.
     """
     reporter = reporter or Reporter()
     check_ownership(directory, case)
@@ -265,6 +288,7 @@ def run_case(
     if not resume:
         (directory / names.CHECKPOINT).unlink(missing_ok=True)
     for stage in stages_of(case):
+        check_before(stage, case, directory, reporter, accept=accept_uncertified)
         if is_up_to_date(stage, case, directory):
             reporter.say(f"{stage.name:<9} {stage.doing}: up to date")
         else:
@@ -293,18 +317,27 @@ def run_from_case(
     run_stage(stage_named(name, case), case, directory, reporter or Reporter())
 
 
-def run_from_files(name: str, directory: Path, reporter: Reporter | None = None) -> None:
+def run_from_files(
+    name: str,
+    directory: Path,
+    reporter: Reporter | None = None,
+    *,
+    accept_uncertified: bool = False,
+) -> None:
     """Run one stage from the files that the stages before it wrote into ``directory``.
 
     Raises
     ------
     DirectoryError, StateFileError
-        If a file is missing, damaged or belongs to another case.
+        If a file is missing, damaged or belongs to another case; if the service stage would begin
+        from a hand-over whose certificate has failed, and this is not accepted.
     """
     if not directory.is_dir():
         raise DirectoryError(f"{directory}: no such directory; run `screwpile install` first")
     case = case_for(directory, _first_state_file(name, directory))
-    run_stage(stage_named(name, case), case, directory, reporter or Reporter())
+    stage, reporter = stage_named(name, case), reporter or Reporter()
+    check_before(stage, case, directory, reporter, accept=accept_uncertified)
+    run_stage(stage, case, directory, reporter)
 
 
 def _first_state_file(name: str, directory: Path) -> str:

@@ -14,6 +14,7 @@ from install_mpm.state_file import InstalledState
 from workflows import screw_report_curves as curves
 from workflows import screw_report_ground as ground
 from workflows import screw_report_service as in_service
+from workflows.certified import warning_html
 from workflows.directory import REPORT, TIMING, write_text
 from workflows.interactive import interactive
 from workflows.interactive_curves import torque_and_force
@@ -63,7 +64,7 @@ def sections(directory: Path, case: ScrewCase, installed: InstalledState) -> lis
         return parts
     files = in_service.read_service_files(directory, case)
     first = parts[0]._replace(
-        html=in_service.warning_html(files)
+        html=warning_html(files.certificate)
         + parts[0].html
         + "<h3>Installed against wished in place</h3>"
         + in_service.comparison_table(files)

@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 
 from handoff.fe_state_file import FEIntegrationPoints, FEState
 from install_mpm.conventions import Kinematics
+from install_mpm.ground import soils_of
 from install_mpm.state_file import InstalledState
-from service_fe.results import ServiceResult
+from service_fe.results import ServiceResult, without_pile
 from workflows import directory as names
 from workflows.interactive import interactive
 from workflows.interactive_curves import service_curves
@@ -31,6 +32,7 @@ from workflows.report_tables import (
     version_table,
 )
 from workflows.report_units import significant
+from workflows.screw_along import along_pile, lateral_programmes
 from workflows.screw_case import ScrewCase
 from workflows.screw_frames import PointCloud
 from workflows.screw_report_ground import pose_of
@@ -67,23 +69,13 @@ def read_service_files(directory: Path, case: ScrewCase) -> ServiceFiles:
     StateFileError, DirectoryError
         If a file is missing or damaged, or belongs to another case.
     """
+    n_soils = len(soils_of(case.ground))
     return ServiceFiles(
         handed_off=read_checked(directory, names.HANDED_OFF, case),
-        service=read_checked(directory, names.SERVICE, case),
-        wished=read_checked(directory, names.WISHED_SERVICE, case),
+        service=without_pile(read_checked(directory, names.SERVICE, case), n_soils),
+        wished=without_pile(read_checked(directory, names.WISHED_SERVICE, case), n_soils),
         certificate=read_json(directory / names.CERTIFICATE, "screwpile handoff"),
         summary=read_json(directory / names.SUMMARY, "screwpile compare"),
-    )
-
-
-def warning_html(files: ServiceFiles) -> str:
-    """Return what a reader must know first: how many checks of the certificate failed."""
-    n_failed = sum(not entry["is_met"] for entry in files.certificate.values())
-    if not n_failed:
-        return ""
-    return (
-        f'<p class="warning">Checks of the certificate that failed: {n_failed}. Look at '
-        '<a href="#handoff">Hand-over</a> before using the results in service.</p>'
     )
 
 
@@ -184,6 +176,14 @@ def service_html(case: ScrewCase, files: ServiceFiles) -> str:
                 caption("curves"),
             ),
             comparison_table(files),
+            *(
+                figure(
+                    f"along-{name}",
+                    along_pile(files.service, files.wished, name),
+                    f"{spaced(name)}: {caption('along')}",
+                )
+                for name in lateral_programmes(files.service)
+            ),
             "<h3>Convergence</h3>",
             convergence_table(files.summary["convergence"]),
             SERVICE_LIMITS,

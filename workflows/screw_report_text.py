@@ -113,6 +113,10 @@ SERVICE_CAPTIONS = {
         the installed pile and the same pile wished in place, in the same programme. Dot: capacity
         at a displacement of 0.1 diameters of the largest plate. Cross: where initial and final
         tangent meet.""",
+    "along": """what the pile feels along its axis at the end, in the direction of the load:
+        deflection, force p of the soil per length against the load, and of a deformable pile shear
+        force and bending moment from the stress in its sections. Right: p over the deflection y at
+        some levels, darker with the depth. All are changes since the start of the programme.""",
 }
 
 SERVICE_LIMITS = """
@@ -124,6 +128,8 @@ it.</li>
 <li>One mesh and one way of carrying the stress over give one answer: repeat the run with another
 <code>handoff.size_at_pile</code> and another <code>handoff.neighbours</code>, and take the
 spread as the uncertainty of the ratio.</li>
+<li>The pile is rigid; with <code>[service.pile]</code> it is elastic, and starts without other
+stress than what balances the ground that was handed over.</li>
 <li>In compression and uplift the head is guided: it neither turns nor moves sideways.</li>
 </ul>
 """

@@ -25,7 +25,7 @@ def state_file_page() -> str:
     """Return the page as Markdown."""
     programmes = {
         f"programmes/<number>/{group}": record
-        for group, record in result_file.PROGRAMME_RECORDS.items()
+        for group, record in (*result_file.PROGRAMME_RECORDS.items(), *result_file.ALONG.items())
     }
     return Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         conventions="\n".join(f"- {convention}" for convention in CONVENTIONS),

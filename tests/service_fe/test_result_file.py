@@ -9,6 +9,7 @@ from install_mpm.seal import seal
 from install_mpm.state_file import case_hash
 from service_fe.options import Displace, Release
 from service_fe.result_file import read_service_result, write_service_result
+from service_fe.results import AlongPile
 from service_fe.solve import run
 
 pytestmark = pytest.mark.dolfinx
@@ -42,10 +43,21 @@ def test_round_trip(path, result):
             np.testing.assert_equal(getattr(its, record)._asdict(), getattr(mine, record)._asdict())
 
 
+def test_what_a_pile_feels_along_its_axis_comes_back(tmp_path, result):
+    levels = np.linspace(-2.0, 0.0, 4)
+    lateral = np.arange(24.0).reshape(3, 4, 2)
+    along = AlongPile(levels, np.nan * lateral, lateral, lateral[..., 0], -lateral, 2.0 * lateral)
+    first = result.programmes[0]._replace(along=along)
+    write_service_result(tmp_path / "service.h5", result._replace(programmes=(first,)), "test")
+    (read,) = read_service_result(tmp_path / "service.h5").programmes
+    np.testing.assert_equal(read.along._asdict(), along._asdict())
+    assert result.programmes[0].along is None  # only a pile in space has one
+
+
 def test_file_carries_format_and_case(path):
     with h5py.File(path) as file:
         assert file.attrs["format"] == "screwpile-service-result"
-        assert file.attrs["version"] == 3
+        assert file.attrs["version"] == 4
         assert file.attrs["case_sha256"] == case_hash(CASE_TEXT)
         assert file["programmes/001/curve/head_load"].attrs["unit"] == "N or N m"
 

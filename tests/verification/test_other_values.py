@@ -71,13 +71,19 @@ CHANGED = {
     "PB4-SMOOTH": {"phi": np.radians(25.0)},
     "PB5": {"phi": np.radians(25.0)},
     "PB6": {"su": 5e3, "size": 0.3, "steps": 8},
+    "PB6-FE": {"su": 5e3, "size": 0.3, "steps": 8},
     "PB7": {"alpha_2": 0.5, "penetration": 1.0, "size": 0.5, "step": 0.2},
     "PB9": {"alpha": 0.3, "size": 0.5, "penetration": 0.1},
     "PC1": {"p": 0.2, "alpha": 0.5},
     "PC2": {"alpha": 0.3},
     "PC3": {"p": 0.3, "alpha": 0.5},
+    "PD1": {"nu": 0.2},
     "PD1-V": {"nu": 0.2},
+    "PD3": {"L": 10.0, "Ep": 10e9, "extent": 60.0, "depth": 70.0},
+    "PD5": {"G": 20e6, "nu": 0.4},
     "PD7": {"nu": 0.4},
+    "PD8": {"nu": 0.2, "c": 3.0},
+    "PD9": {"tau_y": 20e3, "cycles": 3},
     "PD10": {"b": 3.0, "nu": 0.2},
     "PE1": {"phi": np.radians(25.0), "psi": np.radians(25.0), "nu": 0.2},
     "PE2": {"psi": np.radians(10.0), "c": 5e3},
@@ -86,6 +92,11 @@ CHANGED = {
     "PE6": {"psi": 0.0, "K0": 0.5},
     "PE7": {"nu": 0.2},
     "PE8": {"phi": np.radians(25.0), "c": 20e3, "seed": 2},
+    "PF1": {"neighbours": 40, "seed": 3},
+    "PF2": {"gamma": 18e3, "K0": 0.8},
+    "PF4": {"alpha": 0.8, "penetration": 0.2},
+    "PF5": {"alpha": 0.8, "penetration": 0.2},
+    "PF6": {"su": 20e3, "B": 2.0},
     "SCHEMES": {"K0": 0.7, "rows": 8, "steps": 10},
     "SHAFT-CLAY": {"a": 0.4, "su": 20e3},
     "SHAFT-SAND": {"delta": np.radians(15.0), "turned": np.radians(90.0)},
@@ -95,10 +106,10 @@ CHANGED = {
 }
 """Physical parameters, and the numerical ones that make a slow problem short."""
 
-REDUCED = {"AMPLE-COLLAPSE", "PB6", "PB7"}
+REDUCED = {"AMPLE-COLLAPSE", "PB6", "PB6-FE", "PB7"}
 """Problems that are too coarse here, or end too early, for their checks."""
 
-WITHOUT_ITERATIONS = {"OPENSEES-DP", "PA4", "PA4-3D", "PC1", "PE1", "PE7", "PE8"}
+WITHOUT_ITERATIONS = {"OPENSEES-DP", "PA4", "PA4-3D", "PC1", "PE1", "PE7", "PE8", "PF1", "PF2"}
 """Problems whose motion is given at every node or component: nothing is left to iterate."""
 
 

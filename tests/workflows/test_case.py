@@ -1,10 +1,12 @@
 """The case file: units, ranges, cross checks, overrides, canonical text."""
 
+import re
 from pathlib import Path
 
 import pytest
 
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises
+from service_fe.options import DeformablePile
 from workflows.case import case_text, parse_case, read_case, sections_text
 from workflows.errors import CaseError
 from workflows.overrides import parse_value
@@ -98,6 +100,22 @@ def test_overrides_reach_tables_alternatives_and_list_entries():
     assert case.service.programmes[2].displacement == -0.05
     assert case.service.programmes[0].steps == 7
     assert case.title == "Stiffer"
+
+
+def test_a_deformable_pile_is_a_table_of_the_service_stage():
+    case, _ = read_case(MAIN)
+    assert case.service.pile is None
+    steel, _ = read_case(
+        MAIN, ["service.pile.youngs_modulus=210 GPa", "service.pile.contact=bonded"]
+    )
+    assert steel.service.pile == DeformablePile(210e9, 0.3, "bonded")
+    for wrong, words in (
+        ("service.pile.contact=glued", 'must be one of "interface", "bonded"'),
+        ("service.pile.youngs_modulus=0 GPa", "must be > 0"),
+        ("service.pile.poissons_ratio=0.5", ">= 0 and < 0.5"),
+    ):
+        with pytest.raises(CaseError, match=re.escape(words)):
+            read_case(MAIN, ["service.pile.youngs_modulus=210 GPa", wrong])
 
 
 def test_another_soil_is_chosen_by_its_tag():

@@ -12,6 +12,7 @@ import pytest
 
 from install_mpm.seal import seal
 from workflows import cli
+from workflows.directory import REPORT, SERVICE, WISHED_SERVICE
 
 CASES = Path(__file__).parents[2] / "cases"
 QUICK = CASES / "jacked_pile_clay_quick.toml"
@@ -150,6 +151,27 @@ def test_missing_files_are_named_with_the_command_that_writes_them(
 ):
     (results_copy / missing).unlink()
     assert_refused(monkeypatch, capsys, words, command, results_copy)
+
+
+@pytest.mark.dolfinx
+def test_a_failed_certificate_stops_the_run_unless_accepted(results_copy, monkeypatch, capsys):
+    strict = ("--set", "handoff.max_synthetic_error=1e-6")
+    run = ("run", QUICK, "-o", results_copy, *strict)
+    before = content(results_copy)
+    assert screwpile(monkeypatch, *run) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "handed_off.h5: the hand-over is not certified: synthetic_error is " in line
+    assert "(limit 1e-06), synthetic_error_near_pile is " in line
+    assert line.endswith("or go on with --accept-uncertified")
+    for name in (SERVICE, WISHED_SERVICE, REPORT):
+        assert content(results_copy)[Path(name)] == before[Path(name)]
+    assert_refused(monkeypatch, capsys, "is not certified", "serve", results_copy)
+
+    assert screwpile(monkeypatch, *run, "--accept-uncertified") == 0
+    assert "not certified, and accepted: synthetic_error is" in capsys.readouterr().out
+    page = (results_copy / REPORT).read_text(encoding="utf-8")
+    assert 'class="warning"><strong class="fail">Not certified.</strong>' in page
+    assert screwpile(monkeypatch, *run) == 2  # also when all stages are up to date
 
 
 @pytest.mark.dolfinx

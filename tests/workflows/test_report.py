@@ -133,7 +133,8 @@ def test_a_failed_check_is_red_and_announced(results_copy):
     path.write_text(json.dumps(certificate))
     html = write_report(results_copy).read_text(encoding="utf-8")
     assert html.count('class="fail">FAIL') == 1
-    assert 'class="warning">Checks of the certificate that failed: 1.' in html
+    assert 'class="warning"><strong class="fail">Not certified.</strong>' in html
+    assert "Checks of the certificate that failed: 1 (<code>synthetic_error</code>)." in html
 
 
 def test_passed_checks_are_not_announced(html):

@@ -18,7 +18,7 @@ from service_fe.solve import run as run_programmes
 from workflows.case import AnyCase, case_text
 from workflows.directory import HANDED_OFF, SERVICE
 from workflows.manifest import created_by
-from workflows.placed import placed_pile, service_problem
+from workflows.placed import loaded_in_service, placed_pile, service_problem
 from workflows.progress import Advance, no_progress, service_observer
 from workflows.state_files import read_checked
 
@@ -32,15 +32,18 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
         If ``handed_off.h5`` is missing or damaged, or belongs to another case.
     ServiceError
         If a step does not converge; nothing is written.
+    MeshError
+        If a deformable pile cannot be meshed.
     """
     handed_off: HandedOffState = read_checked(directory, HANDED_OFF, case)
     assert case.service is not None
     pile = handed_off.pile
     placed = placed_pile(case, float(pile.tip_depth), float(pile.rotation))
-    problem = service_problem(case, placed, handed_off.mesh)
+    rigid = service_problem(case, placed, handed_off.mesh)
+    problem, state = loaded_in_service(case, placed, rigid, handed_off.state)
     result = run_programmes(
         problem,
-        handed_off.state,
+        state,
         case.service.programmes,
         service_observer(case, advance),
         model="installed",

@@ -21,6 +21,7 @@ from workflows.directory import INSTALLED, WISHED, WISHED_SERVICE
 from workflows.manifest import created_by
 from workflows.placed import (
     is_end_given,
+    loaded_in_service,
     pile_at_end,
     pile_where_rig_stopped,
     service_problem,
@@ -47,10 +48,12 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     assert case.service is not None
     placed = _placed(case, directory)
     mesh = placed.mesh(case.box, case.handoff, level_surface(), boundary_depths(case.ground))
-    problem = service_problem(case, placed, mesh)
+    rigid = service_problem(case, placed, mesh)
+    undisturbed = wished_in_place(case.ground, case.interface, rigid, case.handoff)
+    problem, state = loaded_in_service(case, placed, rigid, undisturbed)
     result = run_programmes(
         problem,
-        wished_in_place(case.ground, case.interface, problem, case.handoff),
+        state,
         case.service.programmes,
         service_observer(case, advance),
         model="wished_in_place",

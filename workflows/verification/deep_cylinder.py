@@ -75,13 +75,21 @@ def deep_cylinder(
             relative(f"resistance / (su D), alpha = {alpha:g}", factors[-1], exact, 0.03),
             at_most(f"its change over the last fifth, alpha = {alpha:g}", flatness, FLAT),
         ]
-        series.append(_curve(alpha, reached, factors, exact))
+        series.append(curve(alpha, reached, factors, exact))
     return Outcome(
         tuple(checks), tuple(series), residual_histories=tuple(histories), round_off=ROUND_OFF
     )
 
 
-def _curve(alpha: float, reached: np.ndarray, factors: list[float], exact: float) -> Series:
+def polar_lines(radius: float, outer_ratio: float, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return radii (m) and angles (rad) of a quarter; ``size`` of the cells is over the radius."""
+    n_rings, n_facets = round(np.log(outer_ratio) / np.log1p(size)), round(0.5 * np.pi / size)
+    radii = np.geomspace(radius, outer_ratio * radius, n_rings + 1)
+    return radii, np.linspace(0.0, 0.5 * np.pi, n_facets + 1)
+
+
+def curve(alpha: float, reached: np.ndarray, factors: list[float], exact: float) -> Series:
+    """Return the resistance over the displacement ``reached``, beside the exact one."""
     return Series(
         title=f"Resistance of a deep cylinder, alpha = {alpha:g}",
         abscissa="displacement E / (su R) (-)",
@@ -96,13 +104,12 @@ def _soil_around_cylinder(
     radius: float, outer_ratio: float, size: float, soil: VonMises, alpha: float
 ) -> tuple[Body, np.ndarray]:
     """Return a quarter of the soil around the cylinder, and which dofs are held."""
-    n_rings, n_facets = round(np.log(outer_ratio) / np.log1p(size)), round(0.5 * np.pi / size)
-    angles = np.linspace(0.0, 0.5 * np.pi, n_facets + 1)
-    mesh, polar = polar_mesh(np.geomspace(radius, outer_ratio * radius, n_rings + 1), angles)
+    radii, angles = polar_lines(radius, outer_ratio, size)
+    mesh, polar = polar_mesh(radii, angles)
     elements = facet_elements(mesh, polar[:, 0] == radius)
     position = facet_points(elements, mesh)
     normal = -position / np.linalg.norm(position, axis=1)[:, None]
-    area = np.tile(elements.weights, len(elements.nodes)) * 0.5 * np.pi * radius / n_facets
+    area = np.tile(elements.weights, len(elements.nodes)) * angles[1] * radius
     stiffness = SPRING * soil.youngs_modulus / radius
     law = CoulombInterface(stiffness, stiffness, adhesion_factor=alpha)
     body = make_body(

@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 from workflows.errors import CaseError
 
 POSITIVE_UNITS = ("m", "Pa/m", "kg/m^3", "m/s^2", "N")
-MODULUS = re.compile(r"(E|G|su)(_ground)?")
+MODULUS = re.compile(r"(E|G|su)(_ground)?|Ep|tau_y")
 ANGLE = re.compile(r"phi|psi|delta")
 SHARE = re.compile(r"alpha(_\d+)?")
-SIGNED = re.compile(r"(sigma|tau)_\w+")
+SIGNED = re.compile(r"(sigma|tau)_(?!y$)\w+")
 
 
 class Range(NamedTuple):

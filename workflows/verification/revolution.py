@@ -26,12 +26,21 @@ def half_space_mesh(radius: float, extent: float, size_at_edge: float, growth: f
         return size_at_edge + growth * float(np.hypot(r - radius, z))
 
     nodes, cell_nodes, facet_nodes = quadratic(*triangulate(outline, size))
-    r, z = nodes[facet_nodes[:, 2]].T
+    tags = outer_tags(nodes[facet_nodes[:, 2]], extent)
+    return FEMesh(nodes, cell_nodes, facet_nodes, tags)
+
+
+def outer_tags(places: np.ndarray, extent: float, depth: float | None = None) -> np.ndarray:
+    """Return the tags (n,) of boundary facets by their middles (n, 2) in m.
+
+    The ground is a cylinder of radius ``extent`` and ``depth``, by default the same, in m.
+    """
+    (r, z), depth = places.T, extent if depth is None else depth
     tags = np.full(len(r), int(FacetTag.SURFACE))
-    tags[np.abs(z + extent) < 1e-9 * extent] = FacetTag.BOTTOM
+    tags[np.abs(z + depth) < 1e-9 * extent] = FacetTag.BOTTOM
     tags[np.abs(r - extent) < 1e-9 * extent] = FacetTag.SIDE
     tags[np.abs(r) < 1e-9 * extent] = FacetTag.SYMMETRY
-    return FEMesh(nodes, cell_nodes, facet_nodes, tags)
+    return tags
 
 
 def quadratic(
@@ -39,14 +48,18 @@ def quadratic(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return nodes with mid-sides at the end, six-node cells, and the edges on the boundary."""
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-    unique, edge, uses = np.unique(
-        np.sort(ends, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
-    edge = edge.reshape(-1)
-    middle = len(vertices) + edge
-    cell_nodes = np.column_stack([triangles, middle.reshape(-1, 3)])
-    facet_nodes = np.column_stack([ends, middle])[uses[edge] == 1]
-    return np.concatenate([vertices, vertices[unique].mean(axis=1)]), cell_nodes, facet_nodes
+    unique, edge = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
+    cell_nodes = np.column_stack([triangles, len(vertices) + edge.reshape(-1, 3)])
+    nodes = np.concatenate([vertices, vertices[unique].mean(axis=1)])
+    return nodes, cell_nodes, boundary_edges(cell_nodes)
+
+
+def boundary_edges(cell_nodes: np.ndarray) -> np.ndarray:
+    """Return the edges (n, 3) of six-node cells that belong to one cell: ends, then mid-side."""
+    start = cell_nodes[:, [0, 1, 2]].ravel()
+    end, middle = cell_nodes[:, [1, 2, 0]].ravel(), cell_nodes[:, 3:].ravel()
+    _, first, uses = np.unique(middle, return_index=True, return_counts=True)
+    return np.stack([start, end, middle], axis=1)[first[uses == 1]]
 
 
 def pressure_force(mesh: FEMesh, facets: np.ndarray) -> np.ndarray:

@@ -9,6 +9,7 @@ from workflows.verification.references.discs import (
     disc_stiffness,
 )
 from workflows.verification.references.elasticity import mindlin_displacement
+from workflows.verification.references.pile_stiffness import head_stiffness, randolph_wroth
 from workflows.verification.references.piles import broms_short_pile, lateral_head
 from workflows.verification.references.thick_cylinder import collapse_pressure, internal_pressure
 
@@ -127,3 +128,19 @@ def test_thick_cylinder():
     np.testing.assert_allclose(pressure, [28.80, 66.79, 85.12, 96.566], rtol=0, atol=5e-3)
     assert collapse_pressure(**data) == pytest.approx(96.566, abs=5e-4)
     assert pressure[-1] == pytest.approx(collapse_pressure(**data))
+
+
+AXIAL = {
+    "length": 20.0, "radius": 0.5, "pile_modulus": 30e9, "shear_modulus": 10e6,
+    "poissons_ratio": 0.3,
+}  # fmt: skip
+
+
+def test_head_stiffness_of_a_pile():
+    """298.5 MN/m in the stated box; a finer grid changes it by less than 0.05 %."""
+    coarse, fine = (
+        head_stiffness(**AXIAL, extent=100.5, depth=120.0, first=first) for first in (0.25, 0.125)
+    )
+    assert fine == pytest.approx(298.5e6, rel=5e-4)
+    assert coarse == pytest.approx(fine, rel=5e-4)
+    assert randolph_wroth(**AXIAL) == pytest.approx(295.2e6, rel=5e-4)
