@@ -14,6 +14,9 @@ from install_mpm.hanging_soil import cells_around_hanging_soil
 from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.kernels.cell_records import CellOptions
 
+SHEAR_OVER_YOUNGS = 0.5
+"""Shear over Young's modulus of the soft stress, whose Poisson's ratio is zero."""
+
 PRESSURE_DEPENDENT = (Model.MODIFIED_CAM_CLAY, Model.CRITICAL_STATE_SAND)
 """Laws whose stiffness grows with the pressure."""
 
@@ -50,7 +53,8 @@ def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisatio
         has_mean_dilatation=model.has_mean_dilatation and model.is_finite_strain,
         is_axisymmetric=model.kinematics == Kinematics.AXISYMMETRIC,
         volumetric_term=model.numerics.volumetric_term * modulus,
-        soft_stiffness=modulus
+        soft_stiffness=SHEAR_OVER_YOUNGS
+        * modulus
         * (
             model.numerics.soft_stiffness * missing
             + model.numerics.open_stiffness * open_share(points, model.materials)

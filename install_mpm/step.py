@@ -114,9 +114,14 @@ def count(points: MaterialPoints, given: StepStart) -> StepCounts:
         injected_points=given.n_injected,
         merged_points=given.n_merged,
         projected_points=0,
-        mass_error=abs(given.points.mass.sum() / points.mass.sum() - 1.0),
-        volume_error=abs(given.points.volume.sum() / points.volume.sum() - 1.0),
+        mass_error=_relative_change(points.mass, given.points.mass),
+        volume_error=_relative_change(points.volume, given.points.volume),
     )
+
+
+def _relative_change(before: np.ndarray, after: np.ndarray) -> float:
+    """Return the change of a sum over its size before, zero if it is zero (soil without weight)."""
+    return float(abs(after.sum() - before.sum()) / (before.sum() or 1.0))
 
 
 def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation) -> InterfacePoints:
