@@ -155,6 +155,10 @@ class AxisymmetricForms:
         self.matrix.assemble()
         return self.matrix
 
+    def rigid_modes(self) -> np.ndarray:
+        """Return the nodal displacements (n_dofs, 1) of the one rigid motion, along the axis."""
+        return np.tile([0.0, 1.0], len(self.mesh.nodes))[:, None]
+
     def _assembled(self, of_cell: np.ndarray) -> np.ndarray:
         """Return the sum (node, 2) at the nodes of the values of cells."""
         total = np.bincount(self._dofs.ravel(), of_cell.ravel(), minlength=self.n_dofs)

@@ -115,6 +115,13 @@ def cell_blocks(space: Any, n_cells: int) -> np.ndarray:
     )
 
 
+def gathered(comm: MPI.Intracomm, own: np.ndarray) -> np.ndarray:
+    """Return the rows of all ranks, one after the other and the same on each."""
+    if comm.size == 1:
+        return own.copy()
+    return np.concatenate(comm.allgather(own))
+
+
 def assemble_into_array(form: Any, size: int) -> np.ndarray:
     """Return the assembled linear form as an array (size,)."""
     vector = np.zeros(size)

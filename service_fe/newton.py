@@ -20,6 +20,24 @@ SLOPE_WANTED = 0.3
 MAX_LINE_SEARCH = 8
 SMALLEST_STEP = 1e-3
 
+LOOSEST = 1e-2
+"""Largest residual that a linear system may keep, over its right-hand side."""
+TIGHTEST = 0.02
+"""Residual of a linear system, over the tolerance of the step, below which there is no use."""
+
+
+def linear_tolerance(size: float, reference: float, tolerance: float) -> float:
+    """Return the residual in N to which the linear system of an iteration is solved.
+
+    ``size`` is the norm of its right-hand side, ``reference`` the force by which Newton's method
+    measures its residuals, both in N; ``tolerance`` is what these have to come to.  A residual in
+    proportion to the square of the size keeps the convergence quadratic (Eisenstat and Walker
+    1996).
+    """
+    if reference <= 0.0:
+        return tolerance * size
+    return max(size * min(size / reference, LOOSEST), TIGHTEST * tolerance * reference)
+
 
 class StepNotConvergedError(RuntimeError):
     """A load step was not solved; ``residuals`` holds the relative residual of each iteration."""

@@ -23,9 +23,9 @@ from install_mpm.ground import (
     unit_weights,
 )
 from install_mpm.pile import WHOLE_PILE
+from service_fe.coupled_solver import make_solver
 from service_fe.interface_forms import InterfaceForms, NormalsOf, flat_normals
 from service_fe.kinematics import FORMS
-from service_fe.linear_solver import TangentSolver
 from service_fe.load_step import LoadStep, Model, Step, Unknowns
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
@@ -99,7 +99,7 @@ class ServiceProblem:
         self.model = Model(
             soil=self._soil,
             interface=self._interface,
-            solver=TangentSolver(self._soil.matrix, self._soil.row_of_dof),
+            solver=make_solver(self._soil, self.numerics),
             materials=dispatch.pack(soils_of(ground)),
             interface_parameters=coulomb_interface.pack(interface, strength),
             is_fixed=roller_supports(mesh) if is_fixed is None else is_fixed,

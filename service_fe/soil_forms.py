@@ -19,6 +19,7 @@ from petsc4py import PETSc
 from handoff.fe_mesh import FEMesh
 from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
 from service_fe import compat
+from service_fe.rigid_pile import rigid_motion
 
 DEGREE = 2
 """Exact for quadratic polynomials: three points in a triangle, four in a tetrahedron."""
@@ -149,6 +150,10 @@ class SoilForms:
         self._tangent.x.array.reshape(-1, values.shape[1])[self._tangent_rows] = values
         compat.assemble_into_matrix(self.matrix, self._stiffness_form)
         return self.matrix
+
+    def rigid_modes(self) -> np.ndarray:
+        """Return the nodal displacements (n_dofs, n_motions) of rigid motions: the softest modes."""
+        return rigid_motion(self.mesh.nodes).reshape(self.n_dofs, -1)
 
     def _assembled(self, form: Any) -> np.ndarray:
         return compat.assemble_into_array(form, self.n_dofs)[self.row_of_dof].reshape(-1, self.dim)
