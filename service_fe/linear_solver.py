@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 from petsc4py import PETSc
 
-from service_fe import compat
+from service_fe.partition import gathered
 
 MAX_TRANSVERSAL = 6
 """MUMPS ICNTL(6): 0 leaves out the permutation that depends on values and outdates the analysis."""
@@ -60,7 +60,7 @@ class TangentMatrix:
 
     def whole(self, vector: PETSc.Vec) -> np.ndarray:
         """Return the values (n_dofs,) of a distributed vector in the order of the unknowns."""
-        in_rows = compat.gathered(self.matrix.getComm().tompi4py(), vector.array_r)
+        in_rows = gathered(self.matrix.getComm().tompi4py(), vector.array_r)
         return in_rows[self.row_of_dof]
 
 

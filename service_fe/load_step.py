@@ -115,7 +115,8 @@ class LoadStep:
     ) -> None:
         self.model, self.state, self.control = model, state, control
         self._frame = frame_of(control)
-        self._viscosity = damping * elastic_tangent(model.materials, state) if damping else None
+        self._own_state = own = model.soil.partition.own(state)
+        self._viscosity = damping * elastic_tangent(model.materials, own) if damping else None
         self.support_motion = np.where(model.is_fixed, support_motion, 0.0)
         self.external_force = external_force
         self._fixed_dofs = np.flatnonzero(model.is_fixed)
@@ -167,7 +168,7 @@ class LoadStep:
         """Return the response, the out-of-balance force and its relative size."""
         model, state = self.model, self.state
         strain = model.soil.strain(unknowns.displacement)
-        soil = soil_response(model.materials, state, strain)
+        soil = soil_response(model.materials, self._own_state, strain)
         stress = soil.stress
         if self._viscosity is not None:
             stress = stress + np.einsum("qij,qj->qi", self._viscosity, strain)
@@ -184,7 +185,7 @@ class LoadStep:
         own_force = pile_force @ self._frame
         loaded_pile = np.where(self.control.is_loaded, own_force - self.control.load, 0.0)
         reference = self._reference(soil_residual, pile_force)
-        is_valid = soil.n_failed == 0
+        is_valid = bool(model.soil.partition.sum_of(np.array(soil.n_failed)) == 0)
         return Trial(
             unknowns,
             soil,
@@ -270,10 +271,11 @@ class LoadStep:
         )
 
     def _accepted(self, trial: Trial, residuals: tuple[float, ...]) -> Step:
+        whole = self.model.soil.partition.whole
         state = FEState(
-            cauchy_stress=tensors_of(trial.soil.stress),
-            elastic_strain=tensors_of(trial.soil.elastic_strain),
-            state_variables=trial.soil.state_variables,
+            cauchy_stress=whole(tensors_of(trial.soil.stress)),
+            elastic_strain=whole(tensors_of(trial.soil.elastic_strain)),
+            state_variables=whole(trial.soil.state_variables),
             material=self.state.material,
             interface_traction=trial.interface.traction,
             pile_displacement=self.state.pile_displacement

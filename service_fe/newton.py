@@ -20,8 +20,10 @@ SLOPE_WANTED = 0.3
 MAX_LINE_SEARCH = 8
 SMALLEST_STEP = 1e-3
 
-LOOSEST = 1e-2
+LOOSEST = 1e-3
 """Largest residual that a linear system may keep, over its right-hand side."""
+FORCING = 0.1
+"""Residual that it may keep, over the square of the relative right-hand side."""
 TIGHTEST = 0.02
 """Residual of a linear system, over the tolerance of the step, below which there is no use."""
 
@@ -36,7 +38,7 @@ def linear_tolerance(size: float, reference: float, tolerance: float) -> float:
     """
     if reference <= 0.0:
         return tolerance * size
-    return max(size * min(size / reference, LOOSEST), TIGHTEST * tolerance * reference)
+    return max(size * min(FORCING * size / reference, LOOSEST), TIGHTEST * tolerance * reference)
 
 
 class StepNotConvergedError(RuntimeError):

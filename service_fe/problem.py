@@ -118,6 +118,15 @@ class ServiceProblem:
         return self._soil.integration_volumes
 
     @property
+    def own_points(self) -> np.ndarray:
+        """Integration points (n,) of this rank of MPI, ascending; all of them without MPI."""
+        return self._soil.partition.own_points
+
+    def whole(self, values: np.ndarray) -> np.ndarray:
+        """Return values (n_q, ...) of all integration points from those (n, ...) of each rank."""
+        return self._soil.partition.whole(values)
+
+    @property
     def interface_positions(self) -> np.ndarray:
         """Positions (n_i, dim) in m of the interface's integration points, facet by facet."""
         return self._interface.positions
@@ -159,12 +168,14 @@ class ServiceProblem:
 
     def gravity(self, state: FEState) -> np.ndarray:
         """Return the nodal forces (node, dim) in N of the weight of the soils of ``state``."""
-        return self._soil.weight(unit_weights(self.ground)[state.material])
+        own = self._soil.partition.own(state)
+        return self._soil.weight(unit_weights(self.ground)[own.material])
 
     def internal_force(self, state: FEState) -> np.ndarray:
         """Return the nodal forces (node, dim) in N of stress and interface of ``state``."""
         soil_force, _ = self._interface.forces(state.interface_traction)
-        return self._soil.internal_force(six_vectors(state.cauchy_stress)) + soil_force
+        own = self._soil.partition.own(state)
+        return self._soil.internal_force(six_vectors(own.cauchy_stress)) + soil_force
 
     def out_of_balance(self, state: FEState) -> float:
         """Return |f_ext - f_int(state)| at the free nodes over the weight of the soil, pile held.

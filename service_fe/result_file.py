@@ -18,7 +18,7 @@ from service_fe.options import Cycles, Displace, Lateral, Load, Programme, Relea
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
 
 FORMAT = "screwpile-service-result"
-VERSION = 3
+VERSION = 4
 
 RECORDS = {"mesh": FEMesh, "integration": FEIntegrationPoints, "interface": FEInterfacePoints}
 """Groups of the file that all programmes share."""

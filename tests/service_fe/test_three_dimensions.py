@@ -62,14 +62,18 @@ def cube():
     return fe_mesh(box_mesh(*lines), outer_tags)
 
 
-@pytest.fixture(scope="module")
-def pile_mesh():
+def square_pile_mesh():
     """A square pile of 0.8 m, 0.8 m deep, in a cube of 2 m."""
     across = np.array([-1.0, -HALF, 0.0, HALF, 1.0])
     solid = extruded(grid(across, across), np.array([-SIZE, -1.3, -TIP, -0.4, 0.0]))
     x, y, z = solid.centroids.T
     is_pile = (np.maximum(np.abs(x), np.abs(y)) < HALF) & (z > -TIP)
     return fe_mesh(quadratic_mesh(solid, ~is_pile), square_pile_tags)
+
+
+@pytest.fixture(scope="module")
+def pile_mesh():
+    return square_pile_mesh()
 
 
 @pytest.fixture(scope="module")

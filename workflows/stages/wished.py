@@ -19,7 +19,8 @@ from workflows.directory import WISHED, WISHED_SERVICE
 from workflows.manifest import created_by
 from workflows.placed import pile_at_end, service_problem
 from workflows.progress import Advance, no_progress, service_observer
-from workflows.stages.serve import settled_notes
+from workflows.ranks import is_first, on_first
+from workflows.stages.serve import fallback_notes, settled_notes
 
 
 def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[str]:
@@ -35,7 +36,8 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     assert case.handoff is not None
     assert case.service is not None
     placed = pile_at_end(case)
-    mesh = placed.mesh(case.box, case.handoff, level_surface(), boundary_depths(case.ground))
+    options, boundaries = case.handoff, boundary_depths(case.ground)
+    mesh = on_first(lambda: placed.mesh(case.box, options, level_surface(), boundaries))
     problem = service_problem(case, placed, mesh)
     result = run_programmes(
         problem,
@@ -45,9 +47,10 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
         model="wished_in_place",
         case_text=case_text(case),
     )
-    (directory / WISHED).mkdir(exist_ok=True)
-    write_service_result(directory / WISHED_SERVICE, result, created_by())
-    return settled_notes(result)
+    if is_first():
+        (directory / WISHED).mkdir(exist_ok=True)
+        write_service_result(directory / WISHED_SERVICE, result, created_by())
+    return settled_notes(result) + fallback_notes(result)
 
 
 if __name__ == "__main__":
