@@ -5,7 +5,7 @@
 The pile of ``cases/screwpile_quick.toml``, wished in place in its clay, goes sideways or down to
 0.1 m. The same programme is run twice on the same mesh: with factors that are used again as the
 case's defaults say, and with a factorisation in each iteration. CPU seconds are counted, because
-machines are shared; a run of each kind of iteration before the first programme compiles the kernels.
+machines are shared; the equilibration before the first programme compiles the kernels.
 """
 
 import argparse
@@ -83,9 +83,7 @@ def programme_cost(
     problem.model = problem.model._replace(solver=timed)  # type: ignore[arg-type]
     begin = time.process_time()
     curve = run(problem, start, [programme]).programmes[0].curve
-    return Cost(
-        timed.iterations, timed.seconds, time.process_time() - begin, timed.work, curve
-    )
+    return Cost(timed.iterations, timed.seconds, time.process_time() - begin, timed.work, curve)
 
 
 def start_of(case: ScrewCase) -> tuple[FEMesh, FEState]:
@@ -125,14 +123,14 @@ def main() -> None:
     assert isinstance(case, ScrewCase)
     mesh, start = start_of(case)
     programme = PROGRAMMES[arguments.programme]
-    print(f"{mesh.nodes.size} unknowns, {len(mesh.cell_nodes)} cells, {programme.name}; CPU seconds")
+    print(
+        f"{mesh.nodes.size} unknowns, {len(mesh.cell_nodes)} cells, {programme.name}; CPU seconds"
+    )
     print(
         f"{'':24} {'iterations':>10} {'factorisations':>14} {'GMRES':>6} {'fallbacks':>9}"
         f" {'linear':>9} {'all':>8} {'per iteration':>14} {'ratio':>8}"
     )
-    again = programme_cost(
-        case, mesh, start, programme, ServiceNumerics(solver=arguments.solver)
-    )
+    again = programme_cost(case, mesh, start, programme, ServiceNumerics(solver=arguments.solver))
     print_row(f"{arguments.solver}, as chosen", again, None)
     plain = programme_cost(case, mesh, start, programme, ServiceNumerics(max_factor_reuse=0))
     print_row("refactorised each time", plain, plain)

@@ -43,9 +43,9 @@ def hand_over(
     """Return the finite-element model of the installed pile, in equilibrium, and its certificate.
 
     ``placed`` is the pile at its installed place, ``make_problem`` makes the finite-element problem
-    on a mesh; ``observe`` is told what begins.  ``once`` calls what it is given, on several ranks of
-    MPI on one of them alone.  The certificate may hold figures beyond their
-    limits (``quality.failed_checks``).
+    on a mesh; ``observe`` is told what begins.  ``once`` calls what it is given, on one rank alone
+    if MPI has several.  The certificate may hold figures beyond their limits
+    (``quality.failed_checks``).
 
     Raises
     ------

@@ -12,8 +12,8 @@ element good: a stress that is linear in a cell is integrated exactly, so undist
 balance, and incompressible soil puts three conditions on a cell, not one at every point, so that
 nothing locks (Sloan and Randolph 1982).  The hoop strain u_r / r is never divided by r = 0.
 
-Orders are those of ``soil_forms``; only the components xx, yy, zz (hoop) and xy are not zero.  Every
-rank of MPI computes the whole body: it is small.
+Orders are those of ``soil_forms``; only the components xx, yy, zz (hoop) and xy are not zero.
+Every rank of MPI computes the whole body: it is small.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
-"""The linear system of one Newton iteration, soil and loaded motions of the pile together,
+"""The linear system of one Newton iteration: soil and loaded motions of the pile together.
 
     [ K_ss  K_sl ] [ du  ]   [ b_s ]
     [ K_ls  K_ll ] [ dq_l ] = [ b_l ] ,
 
-solved by GMRES to the accuracy that Newton's method can use.  The preconditioner is the inverse of
-the same system with factors of K_ss made some iterations ago, whose Schur complement
+It is solved by GMRES to the accuracy that Newton's method can use.  The preconditioner is the
+inverse of the same system with factors of K_ss made some iterations ago, whose Schur complement
 
     S = K_ll - K_ls K_ss^-1 K_sl
 
@@ -121,6 +121,10 @@ class CoupledSolver:
             found = self._with_new_factors(system, tolerance)
         return np.split(found, [len(system.soil_force)])[0], found[len(system.soil_force) :]
 
+    def forget(self) -> None:
+        """Use nothing of what was solved before, so that a result does not depend on it."""
+        self._iterations_since = []
+
     def _is_worth_using(self) -> bool:
         """Return whether a further solution costs less than the mean since the factorisation."""
         since = self._iterations_since
@@ -139,7 +143,7 @@ class CoupledSolver:
     def _with_multigrid(
         self, multigrid: ApproximateInverse, system: CoupledSystem, tolerance: float
     ) -> np.ndarray | None:
-        self._iterations_since = []
+        self.forget()
         multigrid.update()
         border = _border_of(system, multigrid)
         found = self._iterated(multigrid, border, system, tolerance, MAX_MULTIGRID)
@@ -149,7 +153,7 @@ class CoupledSolver:
         return None
 
     def _with_new_factors(self, system: CoupledSystem, tolerance: float) -> np.ndarray:
-        self._iterations_since = []
+        self.forget()
         self.work = self.work._replace(factorisations=self.work.factorisations + 1)
         self._factors.update()
         self._border = _border_of(system, self._factors)
@@ -204,9 +208,7 @@ def _border_of(system: CoupledSystem, inverse: ApproximateInverse) -> _Border:
     return _Border(system.motions, system.pile_soil, per_motion, schur)
 
 
-def _preconditioned(
-    inverse: ApproximateInverse, border: _Border, vector: np.ndarray
-) -> np.ndarray:
+def _preconditioned(inverse: ApproximateInverse, border: _Border, vector: np.ndarray) -> np.ndarray:
     """Return the solution (n_dofs + n_loaded,) of the system that ``inverse`` and border know."""
     n_loaded = len(border.schur)
     soil = inverse.solve(vector[: len(vector) - n_loaded])

@@ -241,9 +241,7 @@ class LoadStep:
         )
         return np.concatenate([soil + soil_jump, motion])
 
-    def _system(
-        self, trial: Trial, soil_jump: np.ndarray, pile_jump: np.ndarray
-    ) -> CoupledSystem:
+    def _system(self, trial: Trial, soil_jump: np.ndarray, pile_jump: np.ndarray) -> CoupledSystem:
         """Return the linear system of an iteration, with K_ss left in the solver's matrix."""
         matrix, fixed, loaded = self.model.solver.matrix, self._fixed_dofs, self.control.is_loaded
         stiffness = self.model.soil.stiffness(trial.soil.tangent)
@@ -256,7 +254,9 @@ class LoadStep:
         soil_force = -trial.soil_residual.ravel() - interface.soil_pile @ moved
         if soil_jump.any():
             soil_force -= matrix.multiply(soil_jump)
-        lacking = self.control.load[loaded] - motions.T @ (trial.pile_force + interface.pile @ moved)
+        lacking = self.control.load[loaded] - motions.T @ (
+            trial.pile_force + interface.pile @ moved
+        )
         pile_force = lacking - pile_soil @ soil_jump
         soil_force[fixed], soil_pile[fixed], pile_soil[:, fixed] = 0.0, 0.0, 0.0
         matrix.fix(fixed, diagonal=_mean_diagonal(stiffness))

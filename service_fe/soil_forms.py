@@ -164,7 +164,7 @@ class SoilForms:
         return self.matrix
 
     def rigid_modes(self) -> np.ndarray:
-        """Return the nodal displacements (n_dofs, n_motions) of rigid motions: the softest modes."""
+        """Return the nodal displacements (n_dofs, n_motions) of rigid motions."""
         return rigid_motion(self.mesh.nodes).reshape(self.n_dofs, -1)
 
     def _assembled(self, form: Any) -> np.ndarray:

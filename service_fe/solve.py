@@ -141,6 +141,7 @@ def run_programme(
     ServiceError
         If a step does not converge.
     """
+    problem.model.solver.forget()
     load = problem.pile_load(state)
     steps = imposed_steps(programme, load)
     rows = [_first_row(problem, steps[0].mode, load)]
@@ -234,9 +235,7 @@ def _first_row(problem: ServiceProblem, mode: Mode, load: np.ndarray) -> _Row:
     return _Row(0.0, head_load, 0, 0, 0, Work(), (), np.zeros(len(load)), whole)
 
 
-def _row(
-    problem: ServiceProblem, before: _Row, mode: Mode, taken: Advance, work: Work
-) -> _Row:
+def _row(problem: ServiceProblem, before: _Row, mode: Mode, taken: Advance, work: Work) -> _Row:
     moved = taken.increment.motion
     load = problem.whole_body * taken.last.pile_load
     return _Row(

@@ -55,7 +55,7 @@ def on_first(make: Callable[[], T]) -> T:
 def end_after(error: Exception, sentence: str | None, status: int) -> NoReturn:
     """Say what is wrong once, and end all ranks with ``status``.
 
-    A ``sentence`` that all ranks have to say is said by the first.  If this rank alone has it, or if
+    A ``sentence`` that all ranks have to say is said by the first.  If this rank alone has it, or
     there is none because the ``error`` is not the user's, the others are ended where they are.
     """
     if n_ranks() > 1 and (sentence is None or not _all_have_come()):

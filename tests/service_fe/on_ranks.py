@@ -1,6 +1,6 @@
 """Loads a small pile in space on as many ranks as there are; the first writes the result.
 
-    mpirun -n N python -m tests.service_fe.on_ranks FILE
+mpirun -n N python -m tests.service_fe.on_ranks FILE
 """
 
 import sys
@@ -12,7 +12,7 @@ from mpi4py import MPI
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground
-from service_fe.options import Displace, Lateral, Release, ServiceNumerics
+from service_fe.options import Lateral, Release
 from service_fe.problem import ServiceProblem
 from service_fe.solve import run
 from tests.service_fe.test_three_dimensions import square_normals, square_pile_mesh
@@ -21,8 +21,7 @@ CLAY = VonMises(youngs_modulus=4e6, poissons_ratio=0.45, undrained_shear_strengt
 ROUGH = CoulombInterface(normal_stiffness=2e8, shear_stiffness=2e7, adhesion_factor=0.5)
 PROGRAMMES = (
     Release(steps=1),
-    Displace("compression", 0.04, 0.02, first_step_halvings=0),
-    Lateral("lateral", 0.02, 0.01, height=1.0, direction=0.3, first_step_halvings=0),
+    Lateral("lateral", 0.02, 0.02, height=1.0, direction=0.3, first_step_halvings=0),
 )
 
 
@@ -30,7 +29,7 @@ def main() -> None:
     """Run the programmes and write curves, stress and displacement."""
     problem = ServiceProblem(
         square_pile_mesh(), Ground(18e3, 0.8, CLAY), ROUGH, 1e3,
-        ServiceNumerics(solver=sys.argv[2]), kinematics=Kinematics.THREE_D, normals=square_normals,
+        kinematics=Kinematics.THREE_D, normals=square_normals,
     )  # fmt: skip
     n_own = MPI.COMM_WORLD.allgather(len(problem.own_points))
     result = run(problem, problem.wished_in_place_state(), PROGRAMMES)

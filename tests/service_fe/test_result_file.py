@@ -45,7 +45,7 @@ def test_round_trip(path, result):
 def test_file_carries_format_and_case(path):
     with h5py.File(path) as file:
         assert file.attrs["format"] == "screwpile-service-result"
-        assert file.attrs["version"] == 3
+        assert file.attrs["version"] == 4
         assert file.attrs["case_sha256"] == case_hash(CASE_TEXT)
         assert file["programmes/001/curve/head_load"].attrs["unit"] == "N or N m"
 
