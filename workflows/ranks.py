@@ -13,6 +13,8 @@ import traceback
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NoReturn, TypeVar
 
+from workflows.errors import CaseError
+
 if TYPE_CHECKING:
     from mpi4py import MPI
 
@@ -21,6 +23,9 @@ SIZE_VARIABLES = ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE")
 
 PATIENCE = 10.0
 """Seconds that a rank with an error waits for the others to have the same one."""
+
+PARALLEL = ("hand_off", "serve", "wished")
+"""Stages that several ranks can run together."""
 
 T = TypeVar("T")
 
@@ -33,6 +38,21 @@ def n_ranks() -> int:
 def is_first() -> bool:
     """Return whether this rank writes files and speaks."""
     return n_ranks() == 1 or _all_ranks().Get_rank() == 0
+
+
+def check_ranks(stage: str, command: str) -> None:
+    """Check that ``stage``, run by ``command``, can run on as many ranks as there are.
+
+    Raises
+    ------
+    CaseError
+        If it runs on one only.
+    """
+    if n_ranks() > 1 and stage not in PARALLEL:
+        raise CaseError(
+            f"`{command}` runs on one rank; start it without mpirun, which is for"
+            " `screwpile handoff`, `screwpile serve` and `screwpile wished`"
+        )
 
 
 def on_first(make: Callable[[], T]) -> T:

@@ -20,7 +20,7 @@ from workflows.manifest import (
     write_manifest,
 )
 from workflows.progress import Reporter
-from workflows.ranks import is_first, n_ranks
+from workflows.ranks import check_ranks, is_first
 from workflows.screw_case import ScrewCase
 from workflows.state_files import STATE_FILES, case_for, check_existing, read_checked
 
@@ -131,10 +131,6 @@ SCREW_SERVICE_STAGES = (
 """Stages of a screw pile that is loaded in service."""
 
 
-PARALLEL = ("hand_off", "serve", "wished")
-"""Stages that can run on several ranks of MPI together."""
-
-
 def stages_of(case: AnyCase) -> tuple[Stage, ...]:
     """Return the stages of a case, in order."""
     if not isinstance(case, ScrewCase):
@@ -220,21 +216,6 @@ def _writer(file: str, case: AnyCase) -> Stage:
     return next(stage for stage in stages_of(case) if file in stage.writes)
 
 
-def check_ranks(stage: Stage) -> None:
-    """Check that ``stage`` can run on as many ranks of MPI as there are.
-
-    Raises
-    ------
-    CaseError
-        If it runs on one only.
-    """
-    if n_ranks() > 1 and stage.name not in PARALLEL:
-        raise CaseError(
-            f"`{stage.command}` runs on one rank; start it without mpirun,"
-            " which is for `screwpile handoff`, `serve` and `wished`"
-        )
-
-
 def run_stage(stage: Stage, case: AnyCase, directory: Path, reporter: Reporter) -> None:
     """Run one stage and record it in the manifest.
 
@@ -243,7 +224,7 @@ def run_stage(stage: Stage, case: AnyCase, directory: Path, reporter: Reporter) 
     DirectoryError, StateFileError
         If a file that it reads is missing, damaged, out of date or of another case.
     """
-    check_ranks(stage)
+    check_ranks(stage.name, stage.command)
     check_present(stage, case, directory)
     check_made_from_each_other(stage, case, directory)
     inputs = inputs_of(stage, case, directory)
@@ -274,7 +255,7 @@ def run_case(
         Before anything runs, if ``directory`` holds another case's files or damaged ones.
     """
     reporter = reporter or Reporter()
-    check_ranks(stages_of(case)[0])
+    check_ranks("run", "screwpile run")
     check_ownership(directory, case)
     check_existing(directory, case)
     claim(directory, case)
@@ -302,13 +283,14 @@ def run_from_case(
     DirectoryError
         Before anything runs, if ``directory`` holds another case's results.
     """
-    check_ranks(stage_named(name, case))
+    stage = stage_named(name, case)
+    check_ranks(stage.name, stage.command)
     check_ownership(directory, case)
     if is_first():
         claim(directory, case)
     if name == "install" and not resume:
         (directory / names.CHECKPOINT).unlink(missing_ok=True)
-    run_stage(stage_named(name, case), case, directory, reporter or Reporter())
+    run_stage(stage, case, directory, reporter or Reporter())
 
 
 def run_from_files(name: str, directory: Path, reporter: Reporter | None = None) -> None:
