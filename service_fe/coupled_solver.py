@@ -29,6 +29,7 @@ from service_fe.linear_solver import (
     TangentMatrix,
 )
 from service_fe.options import ServiceNumerics
+from service_fe.partition import ALONE, Partition
 
 FACTORISATION_COST = 40
 """Iterations of GMRES that take as long as a factorisation in space (docs/performance.md)."""
@@ -92,12 +93,18 @@ class CoupledSolver:
     max_reuse
         Most iterations of GMRES with factors of an earlier system; with zero they are never used
         again.
+    partition
+        The ranks of MPI that solve the system together.
     """
 
     def __init__(
-        self, matrix: TangentMatrix, multigrid: ApproximateInverse | None, max_reuse: int
+        self,
+        matrix: TangentMatrix,
+        multigrid: ApproximateInverse | None,
+        max_reuse: int,
+        partition: Partition = ALONE,
     ) -> None:
-        self.matrix, self.work = matrix, Work()
+        self.matrix, self.work, self._partition = matrix, Work(), partition
         self._multigrid, self._factors = multigrid, LUFactors(matrix)
         self._max_reuse = max_reuse
         self._border: _Border | None = None
@@ -112,6 +119,7 @@ class CoupledSolver:
         FactorisationError
             If the stiffness of the soil or of the pile in it is singular.
         """
+        system, tolerance = self._partition.agreed((system, tolerance))
         found = None
         if self._is_worth_using():
             found = self._with_old_factors(system, tolerance)
@@ -119,7 +127,8 @@ class CoupledSolver:
             found = self._with_multigrid(self._multigrid, system, tolerance)
         if found is None:
             found = self._with_new_factors(system, tolerance)
-        return np.split(found, [len(system.soil_force)])[0], found[len(system.soil_force) :]
+        found = self._partition.agreed(found)
+        return found[: len(system.soil_force)], found[len(system.soil_force) :]
 
     def forget(self) -> None:
         """Use nothing of what was solved before, so that a result does not depend on it."""
@@ -186,6 +195,7 @@ class CoupledSolver:
             np.concatenate([system.soil_force, system.pile_force]),
             tolerance,
             max_iterations,
+            self._partition.agreed,
         )
         total = self.work.krylov_iterations + found.iterations
         self.work = self.work._replace(krylov_iterations=total)
@@ -197,7 +207,7 @@ def make_solver(soil: Forms, numerics: ServiceNumerics) -> CoupledSolver:
     matrix = TangentMatrix(soil.matrix, soil.row_of_dof)
     is_iterative = numerics.solver == "iterative"
     multigrid = Multigrid(matrix, soil.rigid_modes()) if is_iterative else None
-    return CoupledSolver(matrix, multigrid, numerics.max_factor_reuse)
+    return CoupledSolver(matrix, multigrid, numerics.max_factor_reuse, soil.partition)
 
 
 def _border_of(system: CoupledSystem, inverse: ApproximateInverse) -> _Border:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 Operator = Callable[[np.ndarray], np.ndarray]
+Found = tuple[np.ndarray, float, float]
 
 
 class KrylovSolution(NamedTuple):
@@ -31,6 +32,7 @@ def solve_gmres(
     right_hand_side: np.ndarray,
     tolerance: float,
     max_iterations: int,
+    agree: Callable[[Found], Found] = lambda found: found,
 ) -> KrylovSolution:
     """Return the solution of A x = b, begun from zero, without restart.
 
@@ -46,6 +48,8 @@ def solve_gmres(
         Norm of b - A x to reach, in the unit of b.
     max_iterations
         Most applications of the preconditioner; two vectors are kept for each.
+    agree
+        Makes what an iteration finds (weights, residual, rest) the same on all ranks of MPI.
     """
     size = float(np.linalg.norm(right_hand_side))
     if size <= tolerance:
@@ -58,8 +62,9 @@ def solve_gmres(
         column, following = _orthogonalised(multiply(corrections[k]), np.array(basis))
         hessenberg[: k + 2, k] = column
         weights, residual = _least_squares(hessenberg[: k + 2, : k + 1], size)
+        weights, residual, rest = agree((weights, residual, float(column[-1])))
         is_reached = residual <= tolerance
-        if is_reached or column[-1] == 0.0:
+        if is_reached or rest == 0.0:
             break
         basis.append(following)
     return KrylovSolution(weights @ np.array(corrections), len(corrections), is_reached)

@@ -138,6 +138,7 @@ class LoadStep:
                 self._has_jump(start),
                 self.model.numerics.tolerance,
                 self.model.numerics.max_iterations,
+                self.model.soil.partition.agreed,
             )
         except FactorisationError as error:
             raise StepNotConvergedError(str(error), (start.relative_residual,)) from error
@@ -186,6 +187,7 @@ class LoadStep:
         loaded_pile = np.where(self.control.is_loaded, own_force - self.control.load, 0.0)
         reference = self._reference(soil_residual, pile_force)
         is_valid = bool(model.soil.partition.sum_of(np.array(soil.n_failed)) == 0)
+        relative = self._relative(free_soil, loaded_pile, reference) if is_valid else float("nan")
         return Trial(
             unknowns,
             soil,
@@ -193,7 +195,7 @@ class LoadStep:
             soil_residual,
             pile_force,
             np.concatenate([free_soil.ravel(), loaded_pile]),
-            self._relative(free_soil, loaded_pile, reference) if is_valid else float("nan"),
+            model.soil.partition.agreed(relative),
         )
 
     def _reference(self, soil_residual: np.ndarray, pile_force: np.ndarray) -> float:
@@ -225,7 +227,8 @@ class LoadStep:
         return soil.ravel(), pile
 
     def _has_jump(self, trial: Trial) -> bool:
-        return any(jump.any() for jump in self._jumps(trial))
+        has_one = any(bool(jump.any()) for jump in self._jumps(trial))
+        return self.model.soil.partition.agreed(has_one)
 
     def search_direction(self, trial: Trial) -> np.ndarray:
         """Return the Newton correction (n_dofs + n_motions,) of soil displacement and motion s.

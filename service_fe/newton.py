@@ -80,6 +80,7 @@ def solve_newton(
     needs_first_iteration: bool,
     tolerance: float,
     max_iterations: int,
+    agree: Callable[[float], float] = float,
 ) -> Solution[TrialT]:
     """Return the converged trial.
 
@@ -95,6 +96,8 @@ def solve_newton(
         True if the start does not satisfy the prescribed motions yet: one full step is taken first.
     tolerance, max_iterations
         Relative residual to reach, and the most iterations.
+    agree
+        Makes a slope the same on all ranks of MPI, as the relative residuals of trials are.
 
     Raises
     ------
@@ -109,7 +112,7 @@ def solve_newton(
             return Solution(trial, tuple(residuals))
         direction = search_direction(trial)
         full = evaluate(trial, direction, 1.0)
-        trial = full if is_lifting else _line_search(trial, full, direction, evaluate)
+        trial = full if is_lifting else _line_search(trial, full, direction, evaluate, agree)
         residuals.append(trial.relative_residual)
         if not np.isfinite(residuals[-1]):
             raise StepNotConvergedError("a soil law could not be evaluated", tuple(residuals))
@@ -125,9 +128,12 @@ def _line_search(
     full: TrialT,
     direction: np.ndarray,
     evaluate: Callable[[TrialT, np.ndarray, float], TrialT],
+    agree: Callable[[float], float],
 ) -> TrialT:
     """Return the trial at the zero of the slope from ``trial`` to ``full`` (Illinois method)."""
-    slope_start, slope_full = direction @ trial.out_of_balance, direction @ full.out_of_balance
+    slope_start, slope_full = (
+        agree(float(direction @ each.out_of_balance)) for each in (trial, full)
+    )
     is_better = full.relative_residual <= 0.5 * trial.relative_residual
     if is_better or slope_start >= 0.0 or slope_full <= SLOPE_KEPT * abs(slope_start):
         return full
@@ -137,7 +143,7 @@ def _line_search(
         length = low - slope_low * (high - low) / (slope_high - slope_low)
         length = max(length, SMALLEST_STEP)
         best = evaluate(trial, direction, length)
-        slope = direction @ best.out_of_balance
+        slope = agree(float(direction @ best.out_of_balance))
         if abs(slope) <= SLOPE_WANTED * abs(slope_start):
             break
         if slope > 0.0:

@@ -1,16 +1,20 @@
 """How the soil is divided among the ranks of MPI, and how they come together again.
 
-Meshes, nodal arrays and accepted states are whole and the same, bit by bit, on every rank.  What is
+Meshes, nodal arrays and accepted states are whole on every rank.  What is
 evaluated in each iteration (soil laws, forces, stiffness, factors) is divided: each rank has its
 own cells with their integration points.
 """
 
 from __future__ import annotations
 
+from typing import TypeVar
+
 import numpy as np
 from mpi4py import MPI
 
 from handoff.fe_state_file import FEState
+
+T = TypeVar("T")
 
 
 def gathered(comm: MPI.Intracomm, own: np.ndarray) -> np.ndarray:
@@ -46,6 +50,14 @@ class Partition:
         in_order[self._points] = rows
         return in_order
 
+    def agreed(self, value: T) -> T:
+        """Return the first rank's ``value``, on which all ranks decide alike.
+
+        What every rank computes for itself may differ in the last bit, because the order of sums in
+        a vector depends on where it lies in memory.
+        """
+        return value if self.comm.size == 1 else self.comm.bcast(value)
+
     def sum_of(self, values: np.ndarray) -> np.ndarray:
         """Return the sum of an array over the ranks, the same to the last bit on each."""
         if self.comm.size == 1:
@@ -54,3 +66,7 @@ class Partition:
         self.comm.Reduce(values, total)
         self.comm.Bcast(total)
         return total
+
+
+ALONE = Partition(MPI.COMM_SELF, np.zeros(0, dtype=np.int64))
+"""One rank that asks no other."""
