@@ -1,0 +1,48 @@
+"""Loads a small pile in space on as many ranks as there are; the first writes the result.
+
+mpirun -n N python -m tests.service_fe.on_ranks FILE
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+
+from install_mpm.constitutive.parameters import CoulombInterface, VonMises
+from install_mpm.conventions import Kinematics
+from install_mpm.ground import Ground
+from service_fe.options import Lateral, Release
+from service_fe.problem import ServiceProblem
+from service_fe.solve import run
+from tests.service_fe.test_three_dimensions import square_normals, square_pile_mesh
+
+CLAY = VonMises(youngs_modulus=4e6, poissons_ratio=0.45, undrained_shear_strength=20e3)
+ROUGH = CoulombInterface(normal_stiffness=2e8, shear_stiffness=2e7, adhesion_factor=0.5)
+PROGRAMMES = (
+    Release(steps=1),
+    Lateral("lateral", 0.02, 0.02, height=1.0, direction=0.3, first_step_halvings=0),
+)
+
+
+def main() -> None:
+    """Run the programmes and write curves, stress and displacement."""
+    problem = ServiceProblem(
+        square_pile_mesh(), Ground(18e3, 0.8, CLAY), ROUGH, 1e3,
+        kinematics=Kinematics.THREE_D, normals=square_normals,
+    )  # fmt: skip
+    n_own = MPI.COMM_WORLD.allgather(len(problem.own_points))
+    result = run(problem, problem.wished_in_place_state(), PROGRAMMES)
+    if MPI.COMM_WORLD.rank > 0:
+        return
+    arrays = {"own_points": np.array(n_own)}
+    for entry in result.programmes:
+        name = entry.programme.name
+        arrays[f"{name}_load"], arrays[f"{name}_motion"] = entry.curve.load, entry.curve.motion
+        arrays[f"{name}_stress"] = entry.state.cauchy_stress
+        arrays[f"{name}_displacement"] = entry.soil.displacement
+    np.savez(Path(sys.argv[1]), **arrays)
+
+
+if __name__ == "__main__":
+    main()
