@@ -28,12 +28,12 @@ def result_of(n_ranks, path):
 
 
 def test_two_ranks_equal_one(tmp_path):
-    """Loads, motions, stress and displacement to 1e-8; the cells are divided."""
+    """Loads, motions, stress, displacement, along the pile to 1e-8; the cells are divided."""
     one = result_of(1, tmp_path / "one.npz")
     two = result_of(2, tmp_path / "two.npz")
     assert len(two["own_points"]) == 2
     assert two["own_points"].sum() == one["own_points"][0]
     assert two["own_points"].max() < 0.7 * one["own_points"][0]
     for name in one.files[1:]:
-        scale = np.abs(one[name]).max()
+        scale = np.abs(np.nan_to_num(one[name])).max()
         np.testing.assert_allclose(two[name], one[name], rtol=0, atol=1e-8 * scale, err_msg=name)
