@@ -63,6 +63,10 @@ class TimedSolver:
         """The work of the solver."""
         return self.solver.work
 
+    def forget(self) -> None:
+        """Use nothing of what was solved before."""
+        self.solver.forget()
+
     def solve(self, system: CoupledSystem, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
         """Return the solution."""
         begin = time.process_time()

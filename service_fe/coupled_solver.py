@@ -32,7 +32,10 @@ from service_fe.options import ServiceNumerics
 from service_fe.partition import ALONE, Partition
 
 FACTORISATION_COST = 40
-"""Iterations of GMRES that take as long as a factorisation in space (docs/performance.md)."""
+"""Iterations of GMRES that a factorisation counts as.
+
+With 13,000 unknowns in space it takes as long as 24 (docs/performance.md), on larger meshes more.
+"""
 MAX_MULTIGRID = 150
 """Iterations of GMRES with multigrid after which it has failed."""
 
