@@ -52,6 +52,13 @@ class EquilibriumProblem(Protocol):
         """Integration weights (n_q,) in m^3, per metre run."""
 
     @property
+    def own_points(self) -> np.ndarray:
+        """Integration points (n,) that this rank of MPI maps; all of them if there is one rank."""
+
+    def whole(self, values: np.ndarray) -> np.ndarray:
+        """Return values (n_q, ...) of all integration points from those (n, ...) of each rank."""
+
+    @property
     def interface_positions(self) -> np.ndarray:
         """Positions (n_i, dim) in m of the integration points of the interface."""
 

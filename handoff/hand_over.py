@@ -21,7 +21,7 @@ from handoff.interface_transfer import forces_on_pile
 from handoff.options import HandoffOptions
 from handoff.placed_pile import PlacedPile
 from handoff.quality import Certificate, Evidence, as_json, certify
-from handoff.state_transfer import state_map, surface_of, transfer_state
+from handoff.state_transfer import state_map_onto, surface_of, transfer_state
 from handoff.surface import surface_profile
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.ground import GroundProfile, boundary_depths
@@ -38,12 +38,14 @@ def hand_over(
     options: HandoffOptions,
     make_problem: Callable[[FEMesh], EquilibriumProblem],
     observe: Callable[[str], None],
+    once: Callable[[Callable[[], FEMesh]], FEMesh] = lambda make: make(),
 ) -> tuple[HandedOffState, Certificate]:
     """Return the finite-element model of the installed pile, in equilibrium, and its certificate.
 
     ``placed`` is the pile at its installed place, ``make_problem`` makes the finite-element problem
-    on a mesh; ``observe`` is told what begins.  The certificate may hold figures beyond their
-    limits (``quality.failed_checks``).
+    on a mesh; ``observe`` is told what begins.  ``once`` calls what it is given, on one rank alone
+    if MPI has several.  The certificate may hold figures beyond their limits
+    (``quality.failed_checks``).
 
     Raises
     ------
@@ -58,12 +60,11 @@ def hand_over(
 
     observe("mesh")
     surface = surface_profile(points, placed.half_width, options.size_at_pile, placed.kinematics)
-    mesh = placed.mesh(box, options, surface, boundary_depths(ground))
+    mesh = once(lambda: placed.mesh(box, options, surface, boundary_depths(ground)))
     problem = make_problem(mesh)
 
     observe("transfer")
-    targets = problem.integration_positions
-    chart = state_map(points, placed, targets, options.neighbours)
+    chart = state_map_onto(problem, points, placed, options.neighbours)
     raw = transfer_state(installed, ground, placed, problem, chart)
 
     observe("admissibility")

@@ -59,6 +59,27 @@ def state_map(
     return StateMap(weights, relative_distance, np.clip(share, 0.0, 1.0))
 
 
+def state_map_onto(
+    problem: EquilibriumProblem, points: MaterialPoints, placed: PlacedPile, neighbours: int
+) -> StateMap:
+    """Return the map from material points to all integration points of ``problem``.
+
+    Each rank of MPI finds the weights of its own.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer material points than ``neighbours``.
+    """
+    targets = problem.integration_positions[problem.own_points]
+    own = state_map(points, placed, targets, neighbours)
+    return StateMap(
+        TransferWeights(*map(problem.whole, own.weights)),
+        problem.whole(own.relative_distance),
+        problem.whole(own.geostatic_share),
+    )
+
+
 def mapped(state_map: StateMap, difference: np.ndarray, geostatic: np.ndarray) -> np.ndarray:
     """Return ``geostatic`` values (n_q, ...) plus the ``difference`` (p, ...) of points to them.
 

@@ -13,16 +13,19 @@ balance, and incompressible soil puts three conditions on a cell, not one at eve
 nothing locks (Sloan and Randolph 1982).  The hoop strain u_r / r is never divided by r = 0.
 
 Orders are those of ``soil_forms``; only the components xx, yy, zz (hoop) and xy are not zero.
+Every rank of MPI computes the whole body: it is small.
 """
 
 from __future__ import annotations
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from handoff.fe_mesh import FEMesh
 from install_mpm.assembly import sparsity_pattern
 from service_fe import compat
+from service_fe.partition import Partition
 
 POINT_DEGREE = 2
 """The rule whose points carry the stress: three in a triangle."""
@@ -106,6 +109,7 @@ class AxisymmetricForms:
         operator /= volumes[:, :, None, None, None]
         self._operator = operator.reshape(-1, N_POINTS * N_COMPONENTS, N_DOFS)
         self.integration_volumes = volumes.ravel()
+        self.partition = Partition(MPI.COMM_SELF, np.arange(volumes.size))
         self._unit_weight = np.zeros((len(corners), 6, 2))
         self._unit_weight[:, :, 1] = ring @ shape
 
@@ -155,6 +159,10 @@ class AxisymmetricForms:
         self.matrix.setValuesCSR(pattern.indptr, pattern.indices, values)
         self.matrix.assemble()
         return self.matrix
+
+    def rigid_modes(self) -> np.ndarray:
+        """Return the nodal displacements (n_dofs, 1) of the one rigid motion, along the axis."""
+        return np.tile([0.0, 1.0], len(self.mesh.nodes))[:, None]
 
     def _assembled(self, of_cell: np.ndarray) -> np.ndarray:
         """Return the sum (node, 2) at the nodes of the values of cells."""

@@ -60,8 +60,13 @@ def quadrature_rule(degree: int, dim: int = 2) -> tuple[np.ndarray, np.ndarray]:
 
 
 def make_simplex_mesh(vertices: np.ndarray, cells: np.ndarray) -> Any:
-    """Return a dolfinx mesh of straight simplices (n, dim + 1) on ``vertices`` (m, dim) in m."""
+    """Return a dolfinx mesh of straight simplices (n, dim + 1) on ``vertices`` (m, dim) in m.
+
+    The first rank's are divided among all; those given by other ranks are left out.
+    """
     comm, dim = MPI.COMM_WORLD, vertices.shape[1]
+    if comm.rank > 0:
+        vertices, cells = vertices[:0], cells[:0]
     rows = np.ascontiguousarray(cells, dtype=np.int64)
     if HAS_BASIX_UFL:
         element = basix.ufl.element("Lagrange", CELLS[dim], 1, shape=(dim,))
@@ -113,6 +118,23 @@ def cell_blocks(space: Any, n_cells: int) -> np.ndarray:
     return (
         np.asarray(array).reshape(-1, space.dofmap.dof_layout.num_dofs)[:n_cells].astype(np.int64)
     )
+
+
+def n_own_cells(mesh: Any) -> int:
+    """Return the number of cells of this rank; they come before those it shares."""
+    return int(mesh.topology.index_map(mesh.topology.dim).size_local)
+
+
+def n_blocks(space: Any) -> int:
+    """Return the number of blocks of unknowns on this rank, shared ones among them."""
+    index_map = space.dofmap.index_map
+    return int(index_map.size_local + index_map.num_ghosts)
+
+
+def global_blocks(space: Any, blocks: np.ndarray) -> np.ndarray:
+    """Return the numbers over all ranks of ``blocks`` of this one."""
+    flat = space.dofmap.index_map.local_to_global(blocks.ravel().astype(np.int32))
+    return np.asarray(flat, dtype=np.int64).reshape(blocks.shape)
 
 
 def assemble_into_array(form: Any, size: int) -> np.ndarray:

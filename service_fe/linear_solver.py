@@ -1,74 +1,143 @@
-"""Direct solution of the tangent system with MUMPS; the analysis of the pattern is made once."""
+"""Approximate inverses of the soil's tangent: LU factors of MUMPS, or algebraic multigrid.
+
+Both stay what they were when the matrix changes, until they are made anew.  Vectors given and
+returned are whole on every rank, in the order of the unknowns; the matrix is distributed.
+"""
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
 from petsc4py import PETSc
+
+from service_fe.partition import gathered
 
 MAX_TRANSVERSAL = 6
 """MUMPS ICNTL(6): 0 leaves out the permutation that depends on values and outdates the analysis."""
 
 
-class TangentSolver:
-    """LU factors of a PETSc matrix whose values change and whose pattern does not.
+class FactorisationError(RuntimeError):
+    """The tangent stiffness cannot be factorised; the step is then made shorter."""
 
-    ``row_of_dof`` (n_dofs,) is the matrix row of each unknown; vectors given and returned are in
-    the order of the unknowns.  The tangent is unsymmetric for a non-associated law, hence LU for
-    all.
+
+class TangentMatrix:
+    """A PETSc matrix whose values change and whose pattern does not.
+
+    ``row_of_dof`` (n_dofs,) is the matrix row of each unknown.
     """
 
     def __init__(self, matrix: PETSc.Mat, row_of_dof: np.ndarray) -> None:
         self.matrix = matrix
         self.row_of_dof = row_of_dof.astype(PETSc.IntType)
         self._right, self._left = matrix.createVecs()
-        self._ksp = PETSc.KSP().create(matrix.getComm())
-        self._ksp.setOperators(matrix)
-        self._ksp.setType(PETSc.KSP.Type.PREONLY)
-        preconditioner = self._ksp.getPC()
-        preconditioner.setType(PETSc.PC.Type.LU)
-        preconditioner.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
-        self._prepare_factors()
-
-    def _prepare_factors(self) -> None:
-        """Make the analysis independent of values; needed again after a reset."""
-        preconditioner = self._ksp.getPC()
-        preconditioner.setFactorSetUpSolverType()
-        preconditioner.getFactorMatrix().setMumpsIcntl(MAX_TRANSVERSAL, 0)
+        first, end = matrix.getOwnershipRange()
+        self._own_dofs = np.argsort(row_of_dof)[first:end]
+        self._is_own = (row_of_dof >= first) & (row_of_dof < end)
 
     def add_blocks(self, dofs: np.ndarray, blocks: np.ndarray) -> None:
-        """Add dense ``blocks`` (n, m, m) at the unknowns ``dofs`` (n, m)."""
-        for rows, block in zip(self.row_of_dof[dofs], blocks, strict=True):
+        """Add dense ``blocks`` (n, m, m), known to every rank, at the unknowns ``dofs`` (n, m)."""
+        comm = self.matrix.getComm()
+        own = slice(comm.getRank(), None, comm.getSize())
+        for rows, block in zip(self.row_of_dof[dofs[own]], blocks[own], strict=True):
             self.matrix.setValues(rows, rows, block, addv=PETSc.InsertMode.ADD_VALUES)
         self.matrix.assemble()
 
+    def fix(self, fixed_dofs: np.ndarray, diagonal: float) -> None:
+        """Make rows and columns of ``fixed_dofs`` zero but for ``diagonal``."""
+        own = fixed_dofs[self._is_own[fixed_dofs]]
+        self.matrix.zeroRowsColumns(self.row_of_dof[own], diag=diagonal)
+
     def multiply(self, vector: np.ndarray) -> np.ndarray:
         """Return the matrix times ``vector`` (n_dofs,)."""
-        self._right.array_w[self.row_of_dof] = vector
-        self.matrix.mult(self._right, self._left)
-        return self._left.array_r[self.row_of_dof]
+        self.matrix.mult(self.distributed(vector), self._left)
+        return self.whole(self._left)
 
-    def factorise(self, fixed_dofs: np.ndarray, diagonal: float) -> None:
-        """Factorise with rows and columns of ``fixed_dofs`` zero but for ``diagonal``."""
-        self.matrix.zeroRowsColumns(self.row_of_dof[fixed_dofs], diag=diagonal)
-        self._ksp.setUp()
+    def distributed(self, vector: np.ndarray) -> PETSc.Vec:
+        """Return ``vector`` (n_dofs,) in the order of the rows; the next call overwrites it."""
+        self._right.array_w[:] = vector[self._own_dofs]
+        return self._right
+
+    def whole(self, vector: PETSc.Vec) -> np.ndarray:
+        """Return the values (n_dofs,) of a distributed vector in the order of the unknowns."""
+        in_rows = gathered(self.matrix.getComm().tompi4py(), vector.array_r)
+        return in_rows[self.row_of_dof]
+
+
+class ApproximateInverse(Protocol):
+    """Something that undoes the matrix of its last update, more or less."""
+
+    def update(self) -> None:
+        """Follow the present values of the matrix; ``FactorisationError`` if that is impossible."""
 
     def solve(self, right_hand_side: np.ndarray) -> np.ndarray:
-        """Return the solution (n_dofs,) with the last factors.
+        """Return the approximate solution (n_dofs,)."""
+
+
+class LUFactors:
+    """MUMPS; the analysis of the pattern is made once.
+
+    The tangent is unsymmetric for a non-associated law, hence LU for all.
+    """
+
+    def __init__(self, matrix: TangentMatrix) -> None:
+        self._matrix = matrix
+        self._solution = matrix.matrix.createVecRight()
+        self._factors = PETSc.PC().create(matrix.matrix.getComm())
+        self._factors.setOperators(matrix.matrix)
+        self._factors.setType(PETSc.PC.Type.LU)
+        self._factors.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+        self._prepare()
+
+    def _prepare(self) -> None:
+        """Make the analysis independent of values; needed again after a reset."""
+        self._factors.setFactorSetUpSolverType()
+        self._factors.getFactorMatrix().setMumpsIcntl(MAX_TRANSVERSAL, 0)
+
+    def update(self) -> None:
+        """Factorise.
 
         Raises
         ------
         FactorisationError
             If the matrix is singular to working precision.
         """
-        self._left.array_w[self.row_of_dof] = right_hand_side
-        self._ksp.solve(self._left, self._right)
-        if self._ksp.getConvergedReason() < 0:
-            self._ksp.getPC().reset()  # PETSc would leave out the factorisation after a failed one
-            self._ksp.setOperators(self.matrix)
-            self._prepare_factors()
+        self._factors.setReusePreconditioner(False)
+        self._factors.setUp()
+        self._factors.setReusePreconditioner(True)
+        if self._factors.getFactorMatrix().getMumpsInfog(1) < 0:
+            self._factors.reset()  # PETSc would leave out the factorisation after a failed one
+            self._factors.setOperators(self._matrix.matrix)
+            self._prepare()
             raise FactorisationError("the tangent stiffness is singular")
-        return self._right.array_r[self.row_of_dof]
+
+    def solve(self, right_hand_side: np.ndarray) -> np.ndarray:
+        """Return the solution (n_dofs,) with the last factors."""
+        self._factors.apply(self._matrix.distributed(right_hand_side), self._solution)
+        return self._matrix.whole(self._solution)
 
 
-class FactorisationError(RuntimeError):
-    """The tangent stiffness cannot be factorised; the step is then made shorter."""
+class Multigrid:
+    """Smoothed aggregation, PETSc's GAMG; ``rigid_modes`` (n_dofs, n_modes) span what is soft."""
+
+    def __init__(self, matrix: TangentMatrix, rigid_modes: np.ndarray) -> None:
+        self._matrix = matrix
+        self._solution = matrix.matrix.createVecRight()
+        modes = []
+        for mode in np.linalg.qr(rigid_modes)[0].T:
+            modes.append(matrix.distributed(mode).copy())
+        matrix.matrix.setNearNullSpace(PETSc.NullSpace().create(vectors=modes))
+        self._cycle = PETSc.PC().create(matrix.matrix.getComm())
+        self._cycle.setOperators(matrix.matrix)
+        self._cycle.setType(PETSc.PC.Type.GAMG)
+
+    def update(self) -> None:
+        """Coarsen again."""
+        self._cycle.setReusePreconditioner(False)
+        self._cycle.setUp()
+        self._cycle.setReusePreconditioner(True)
+
+    def solve(self, right_hand_side: np.ndarray) -> np.ndarray:
+        """Return what one cycle makes of ``right_hand_side``."""
+        self._cycle.apply(self._matrix.distributed(right_hand_side), self._solution)
+        return self._matrix.whole(self._solution)

@@ -1,13 +1,9 @@
 """One load step: out-of-balance force of soil and pile, its linearisation, the accepted result.
 
-Unknowns are the increments of soil displacement u and pile motion q since the accepted state.  With
-K_ss factorised once per iteration, the unknown part q_l of the pile's motion follows from the Schur
-complement
-
-    (K_ll - K_ls K_ss^-1 K_sl) dq_l = -r_l - K_lp dq_p - K_ls K_ss^-1 (-r_s - K_sp dq_p)
-
-with one further back-substitution for each loaded motion.  What is imposed on the pile may be told
-in other components s, q = F s (``rigid_pile``); then K_sp F stands for K_sp, and F^T r_p for r_p.
+Unknowns are the increments of soil displacement u and pile motion q since the accepted state; the
+unknown part q_l of the pile's motion is solved for together with u (``coupled_solver``).  What is
+imposed on the pile may be told in other components s, q = F s (``rigid_pile``); then K_sp F stands
+for K_sp, and F^T r_p for r_p.
 """
 
 from __future__ import annotations
@@ -20,10 +16,11 @@ from handoff.fe_state_file import FEState
 from handoff.tensor_arrays import tensors_of
 from install_mpm.constitutive.dispatch import Materials
 from service_fe.axisymmetric_forms import AxisymmetricForms
+from service_fe.coupled_solver import CoupledSolver, CoupledSystem
 from service_fe.interface_forms import InterfaceForms, InterfaceResponse
-from service_fe.linear_solver import FactorisationError, TangentSolver
+from service_fe.linear_solver import FactorisationError
 from service_fe.material_map import SoilResponse, elastic_tangent, soil_response
-from service_fe.newton import StepNotConvergedError, solve_newton
+from service_fe.newton import StepNotConvergedError, linear_tolerance, solve_newton
 from service_fe.options import ServiceNumerics
 from service_fe.rigid_pile import PileControl, frame_of
 from service_fe.soil_forms import SoilForms
@@ -34,7 +31,7 @@ class Model(NamedTuple):
 
     soil: SoilForms | AxisymmetricForms
     interface: InterfaceForms
-    solver: TangentSolver
+    solver: CoupledSolver
     materials: Materials
     interface_parameters: np.ndarray
     """Packed parameters (n_i, 7)."""
@@ -118,7 +115,8 @@ class LoadStep:
     ) -> None:
         self.model, self.state, self.control = model, state, control
         self._frame = frame_of(control)
-        self._viscosity = damping * elastic_tangent(model.materials, state) if damping else None
+        self._own_state = own = model.soil.partition.own(state)
+        self._viscosity = damping * elastic_tangent(model.materials, own) if damping else None
         self.support_motion = np.where(model.is_fixed, support_motion, 0.0)
         self.external_force = external_force
         self._fixed_dofs = np.flatnonzero(model.is_fixed)
@@ -140,6 +138,7 @@ class LoadStep:
                 self._has_jump(start),
                 self.model.numerics.tolerance,
                 self.model.numerics.max_iterations,
+                self.model.soil.partition.agreed,
             )
         except FactorisationError as error:
             raise StepNotConvergedError(str(error), (start.relative_residual,)) from error
@@ -170,7 +169,7 @@ class LoadStep:
         """Return the response, the out-of-balance force and its relative size."""
         model, state = self.model, self.state
         strain = model.soil.strain(unknowns.displacement)
-        soil = soil_response(model.materials, state, strain)
+        soil = soil_response(model.materials, self._own_state, strain)
         stress = soil.stress
         if self._viscosity is not None:
             stress = stress + np.einsum("qij,qj->qi", self._viscosity, strain)
@@ -187,7 +186,8 @@ class LoadStep:
         own_force = pile_force @ self._frame
         loaded_pile = np.where(self.control.is_loaded, own_force - self.control.load, 0.0)
         reference = self._reference(soil_residual, pile_force)
-        is_valid = soil.n_failed == 0
+        is_valid = bool(model.soil.partition.sum_of(np.array(soil.n_failed)) == 0)
+        relative = self._relative(free_soil, loaded_pile, reference) if is_valid else float("nan")
         return Trial(
             unknowns,
             soil,
@@ -195,25 +195,25 @@ class LoadStep:
             soil_residual,
             pile_force,
             np.concatenate([free_soil.ravel(), loaded_pile]),
-            self._relative(free_soil, loaded_pile, reference) if is_valid else float("nan"),
+            model.soil.partition.agreed(relative),
         )
 
     def _reference(self, soil_residual: np.ndarray, pile_force: np.ndarray) -> float:
-        """Return external force plus support reaction plus load or reaction of the pile, in N."""
+        """Return external force plus support reaction plus load or reaction of the pile, in N.
+
+        Or what that was at the step's start, if more: a step that takes all load away ends at zero.
+        """
         pile = np.where(self.control.is_loaded, self.control.load, pile_force @ self._frame)
-        return float(
+        reference = (
             np.linalg.norm(self.external_force)
             + np.linalg.norm(soil_residual[self.model.is_fixed])
             + np.linalg.norm(self._pile_scale * pile)
         )
+        return max(float(reference), self._start_reference)
 
     def _relative(self, free_soil: np.ndarray, loaded_pile: np.ndarray, reference: float) -> float:
-        """Return the out-of-balance force over the larger reference, now or at the step's start.
-
-        A step that takes all load away ends at a reference of zero.
-        """
+        """Return the out-of-balance force over the reference."""
         residual = np.linalg.norm(free_soil) + np.linalg.norm(self._pile_scale * loaded_pile)
-        reference = max(reference, self._start_reference)
         if residual == 0.0:
             return 0.0
         return float(residual / reference) if reference > 0.0 else 1.0
@@ -227,46 +227,58 @@ class LoadStep:
         return soil.ravel(), pile
 
     def _has_jump(self, trial: Trial) -> bool:
-        return any(jump.any() for jump in self._jumps(trial))
+        has_one = any(bool(jump.any()) for jump in self._jumps(trial))
+        return self.model.soil.partition.agreed(has_one)
 
     def search_direction(self, trial: Trial) -> np.ndarray:
-        """Return the Newton correction (n_dofs + n_motions,) of soil displacement and motion s."""
-        solver, fixed = self.model.solver, self._fixed_dofs
+        """Return the Newton correction (n_dofs + n_motions,) of soil displacement and motion s.
+
+        It is as exact as ``linear_tolerance`` asks.
+        """
+        soil_jump, motion = self._jumps(trial)
+        system = self._system(trial, soil_jump, motion)
+        size = np.hypot(np.linalg.norm(system.soil_force), np.linalg.norm(system.pile_force))
+        reference = self._reference(trial.soil_residual, trial.pile_force)
+        soil, motion[self.control.is_loaded] = self.model.solver.solve(
+            system, linear_tolerance(float(size), reference, self.model.numerics.tolerance)
+        )
+        return np.concatenate([soil + soil_jump, motion])
+
+    def _system(self, trial: Trial, soil_jump: np.ndarray, pile_jump: np.ndarray) -> CoupledSystem:
+        """Return the linear system of an iteration, with K_ss left in the solver's matrix."""
+        matrix, fixed, loaded = self.model.solver.matrix, self._fixed_dofs, self.control.is_loaded
         stiffness = self.model.soil.stiffness(trial.soil.tangent)
         interface = self.model.interface.stiffness(trial.interface.tangent)
-        solver.add_blocks(interface.dofs, interface.soil)
-        soil_jump, pile_jump = self._jumps(trial)
-        frame = self._frame
-        soil_pile, pile_soil = interface.soil_pile @ frame, frame.T @ interface.pile_soil
+        matrix.add_blocks(interface.dofs, interface.soil)
+        motions = self._frame[:, loaded]
+        soil_pile, pile_soil = interface.soil_pile @ motions, motions.T @ interface.pile_soil
+        moved = self._frame @ pile_jump
 
-        right = -trial.soil_residual.ravel() - soil_pile @ pile_jump
+        soil_force = -trial.soil_residual.ravel() - interface.soil_pile @ moved
         if soil_jump.any():
-            right -= solver.multiply(soil_jump)
-        right[fixed] = 0.0
-        solver.factorise(fixed, diagonal=_mean_diagonal(stiffness))
-        soil = solver.solve(right) + soil_jump
-        loaded = np.flatnonzero(self.control.is_loaded)
-        if len(loaded) == 0:
-            return np.concatenate([soil, pile_jump])
-
-        columns = soil_pile[:, loaded].T.copy()
-        columns[:, fixed] = 0.0
-        per_motion = np.array([solver.solve(column) for column in columns])
-        pile = frame.T @ interface.pile @ frame
-        schur = pile[np.ix_(loaded, loaded)] - pile_soil[loaded] @ per_motion.T
-        force = self.control.load - trial.pile_force @ frame - pile @ pile_jump
-        try:
-            unknown = np.linalg.solve(schur, force[loaded] - pile_soil[loaded] @ soil)
-        except np.linalg.LinAlgError as error:
-            raise StepNotConvergedError("the pile has come loose from the soil", ()) from error
-        pile_jump[loaded] = unknown
-        return np.concatenate([soil - per_motion.T @ unknown, pile_jump])
+            soil_force -= matrix.multiply(soil_jump)
+        lacking = self.control.load[loaded] - motions.T @ (
+            trial.pile_force + interface.pile @ moved
+        )
+        pile_force = lacking - pile_soil @ soil_jump
+        soil_force[fixed], soil_pile[fixed], pile_soil[:, fixed] = 0.0, 0.0, 0.0
+        matrix.fix(fixed, diagonal=_mean_diagonal(stiffness))
+        scale = self._pile_scale[loaded]
+        return CoupledSystem(
+            soil_pile=soil_pile,
+            pile_soil=scale[:, None] * pile_soil,
+            pile=scale[:, None] * (motions.T @ interface.pile @ motions),
+            soil_force=soil_force,
+            pile_force=scale * pile_force,
+            motions=motions,
+        )
 
     def _accepted(self, trial: Trial, residuals: tuple[float, ...]) -> Step:
+        whole = self.model.soil.partition.whole
         state = FEState(
-            cauchy_stress=tensors_of(trial.soil.stress),
-            elastic_strain=tensors_of(trial.soil.elastic_strain),
-            state_variables=trial.soil.state_variables,
+            cauchy_stress=whole(tensors_of(trial.soil.stress)),
+            elastic_strain=whole(tensors_of(trial.soil.elastic_strain)),
+            state_variables=whole(trial.soil.state_variables),
             material=self.state.material,
             interface_traction=trial.interface.traction,
             pile_displacement=self.state.pile_displacement

@@ -20,6 +20,26 @@ SLOPE_WANTED = 0.3
 MAX_LINE_SEARCH = 8
 SMALLEST_STEP = 1e-3
 
+LOOSEST = 1e-3
+"""Largest residual that a linear system may keep, over its right-hand side."""
+FORCING = 0.1
+"""Residual that it may keep, over the square of the relative right-hand side."""
+TIGHTEST = 0.02
+"""Residual of a linear system, over the tolerance of the step, below which there is no use."""
+
+
+def linear_tolerance(size: float, reference: float, tolerance: float) -> float:
+    """Return the residual in N to which the linear system of an iteration is solved.
+
+    ``size`` is the norm of its right-hand side, ``reference`` the force by which Newton's method
+    measures its residuals, both in N; ``tolerance`` is what these have to come to.  A residual in
+    proportion to the square of the size keeps the convergence quadratic (Eisenstat and Walker
+    1996).
+    """
+    if reference <= 0.0:
+        return tolerance * size
+    return max(size * min(FORCING * size / reference, LOOSEST), TIGHTEST * tolerance * reference)
+
 
 class StepNotConvergedError(RuntimeError):
     """A load step was not solved; ``residuals`` holds the relative residual of each iteration."""
@@ -60,6 +80,7 @@ def solve_newton(
     needs_first_iteration: bool,
     tolerance: float,
     max_iterations: int,
+    agree: Callable[[float], float] = float,
 ) -> Solution[TrialT]:
     """Return the converged trial.
 
@@ -75,6 +96,8 @@ def solve_newton(
         True if the start does not satisfy the prescribed motions yet: one full step is taken first.
     tolerance, max_iterations
         Relative residual to reach, and the most iterations.
+    agree
+        Makes a slope the same on all ranks of MPI, as the relative residuals of trials are.
 
     Raises
     ------
@@ -89,7 +112,7 @@ def solve_newton(
             return Solution(trial, tuple(residuals))
         direction = search_direction(trial)
         full = evaluate(trial, direction, 1.0)
-        trial = full if is_lifting else _line_search(trial, full, direction, evaluate)
+        trial = full if is_lifting else _line_search(trial, full, direction, evaluate, agree)
         residuals.append(trial.relative_residual)
         if not np.isfinite(residuals[-1]):
             raise StepNotConvergedError("a soil law could not be evaluated", tuple(residuals))
@@ -105,9 +128,12 @@ def _line_search(
     full: TrialT,
     direction: np.ndarray,
     evaluate: Callable[[TrialT, np.ndarray, float], TrialT],
+    agree: Callable[[float], float],
 ) -> TrialT:
     """Return the trial at the zero of the slope from ``trial`` to ``full`` (Illinois method)."""
-    slope_start, slope_full = direction @ trial.out_of_balance, direction @ full.out_of_balance
+    slope_start, slope_full = (
+        agree(float(direction @ each.out_of_balance)) for each in (trial, full)
+    )
     is_better = full.relative_residual <= 0.5 * trial.relative_residual
     if is_better or slope_start >= 0.0 or slope_full <= SLOPE_KEPT * abs(slope_start):
         return full
@@ -117,7 +143,7 @@ def _line_search(
         length = low - slope_low * (high - low) / (slope_high - slope_low)
         length = max(length, SMALLEST_STEP)
         best = evaluate(trial, direction, length)
-        slope = direction @ best.out_of_balance
+        slope = agree(float(direction @ best.out_of_balance))
         if abs(slope) <= SLOPE_WANTED * abs(slope_start):
             break
         if slope > 0.0:

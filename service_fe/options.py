@@ -144,6 +144,10 @@ class ServiceNumerics:
     """Times a step may be halved before the run stops."""
     damping: Annotated[float, Ge(0), Le(10)] = 0.0
     """Viscous over elastic stress with which a step that does not converge is settled; 0: never."""
+    solver: Literal["mumps", "iterative"] = "mumps"
+    """Of the linear systems: LU factors, or multigrid with MUMPS where that fails."""
+    max_factor_reuse: Annotated[int, Ge(0), Le(200)] = 40
+    """Most iterations of GMRES with the factors of an iteration before; 0: factorise each time."""
 
 
 @dataclass(frozen=True)

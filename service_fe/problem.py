@@ -23,10 +23,10 @@ from install_mpm.ground import (
     unit_weights,
 )
 from install_mpm.pile import WHOLE_PILE
+from service_fe.coupled_solver import make_solver
 from service_fe.inclusion import Inclusion, interface_parameters, open_pattern
 from service_fe.interface_forms import InterfaceForms, NormalsOf, flat_normals
 from service_fe.kinematics import FORMS
-from service_fe.linear_solver import TangentSolver
 from service_fe.load_step import LoadStep, Model, Step, Unknowns
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
@@ -108,7 +108,7 @@ class ServiceProblem:
         self.model = Model(
             soil=self._soil,
             interface=self._interface,
-            solver=TangentSolver(self._soil.matrix, self._soil.row_of_dof),
+            solver=make_solver(self._soil, self.numerics),
             materials=dispatch.pack(soils if inclusion is None else (*soils, inclusion.law)),
             interface_parameters=interface_parameters(
                 interface, inclusion, strength, self._interface.parts
@@ -137,6 +137,15 @@ class ServiceProblem:
     def integration_volumes(self) -> np.ndarray:
         """Integration weights (n_q,) in m^3, per metre run or of the whole body."""
         return self._soil.integration_volumes
+
+    @property
+    def own_points(self) -> np.ndarray:
+        """Integration points (n,) of this rank of MPI, ascending; all of them without MPI."""
+        return self._soil.partition.own_points
+
+    def whole(self, values: np.ndarray) -> np.ndarray:
+        """Return values (n_q, ...) of all integration points from those (n, ...) of each rank."""
+        return self._soil.partition.whole(values)
 
     @property
     def interface_positions(self) -> np.ndarray:
@@ -180,12 +189,14 @@ class ServiceProblem:
 
     def gravity(self, state: FEState) -> np.ndarray:
         """Return the nodal forces (node, dim) in N of the weight of the soils of ``state``."""
-        return self._soil.weight(self._unit_weights[state.material])
+        own = self._soil.partition.own(state)
+        return self._soil.weight(self._unit_weights[own.material])
 
     def internal_force(self, state: FEState) -> np.ndarray:
         """Return the nodal forces (node, dim) in N of stress and interface of ``state``."""
         soil_force, _ = self._interface.forces(state.interface_traction)
-        return self._soil.internal_force(six_vectors(state.cauchy_stress)) + soil_force
+        own = self._soil.partition.own(state)
+        return self._soil.internal_force(six_vectors(own.cauchy_stress)) + soil_force
 
     def out_of_balance(self, state: FEState) -> float:
         """Return |f_ext - f_int(state)| at the free nodes over the weight of the soil, pile held.

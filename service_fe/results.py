@@ -26,6 +26,9 @@ FINAL_SHARE = 0.2
 CAPACITY_DISPLACEMENT = 0.1
 """Displacement, over the pile's width, at which the load is called capacity."""
 
+LINEAR_WORK = ("factorisations", "krylov_iterations", "fallbacks")
+"""Counts of a ``Curve`` that tell how the linear systems were solved."""
+
 ModelName = Literal["installed", "wished_in_place"]
 
 
@@ -54,6 +57,13 @@ class Curve(NamedTuple):
     ]
     cuts: Annotated[np.ndarray, _per_step("", "times the step was halved", "int64")]
     settled: Annotated[np.ndarray, _per_step("", "damped parts of a settled step", "int64")]
+    factorisations: Annotated[
+        np.ndarray, _per_step("", "factorisations of the stiffness in the step", "int64")
+    ]
+    krylov_iterations: Annotated[np.ndarray, _per_step("", "iterations of GMRES", "int64")]
+    fallbacks: Annotated[
+        np.ndarray, _per_step("", "times multigrid failed and MUMPS took over", "int64")
+    ]
     residual_history: Annotated[
         np.ndarray,
         Field(

@@ -2,7 +2,9 @@
 
 Everything outside this module is in the order of the ``FEMesh``: nodal arrays are (node, dim),
 integration points run over its cells and, within a cell, over the points of the rule.  dolfinx
-renumbers both; the maps are made here once.  In plane strain only the three in-plane components xx,
+renumbers both and divides the cells among the ranks of MPI; the maps are made here once.  Nodal
+arrays are whole on every rank, those of integration points hold the rank's own
+(``partition``).  In plane strain only the three in-plane components xx,
 yy, xy of the six-vectors enter the forms, because the out-of-plane strain is zero.
 """
 
@@ -19,6 +21,8 @@ from petsc4py import PETSc
 from handoff.fe_mesh import FEMesh
 from install_mpm.constitutive.mandel import COLUMN, ROW, SCALE
 from service_fe import compat
+from service_fe.partition import Partition, gathered
+from service_fe.rigid_pile import rigid_motion
 
 DEGREE = 2
 """Exact for quadratic polynomials: three points in a triangle, four in a tetrahedron."""
@@ -46,13 +50,10 @@ class SoilForms:
     Raises
     ------
     ValueError
-        If the mid-side nodes are not in the middle of straight edges, or more than one rank is
-        used.
+        If the mid-side nodes are not in the middle of straight edges, or a node belongs to no cell.
     """
 
     def __init__(self, mesh: FEMesh) -> None:
-        if MPI.COMM_WORLD.size > 1:
-            raise ValueError("the service stage runs on one rank; start it without mpirun")
         self.mesh = mesh
         self.dim = mesh.nodes.shape[1]
         self.n_dofs = mesh.nodes.size
@@ -62,21 +63,26 @@ class SoilForms:
             self.domain = compat.make_simplex_mesh(
                 mesh.nodes[vertices], cell_vertices.reshape(-1, self.dim + 1)
             )
-            cells = self.domain.topology.original_cell_index
-            self.original_cell = np.asarray(cells, dtype=np.int64)
+            cells = np.asarray(self.domain.topology.original_cell_index, dtype=np.int64)
+            self._cells = cells[: compat.n_own_cells(self.domain)]
+            self._own_cells = np.sort(self._cells)
+            self._place = np.searchsorted(self._own_cells, self._cells)
             self.space = compat.make_displacement_space(self.domain)
+            self._blocks = compat.cell_blocks(self.space, len(self._cells))
+            self._nodes = mesh.cell_nodes[self._cells][:, BASIX_ORDER[self.dim]]
             self.row_of_dof = self._row_of_dof()
             self._make_forms()
 
     def _row_of_dof(self) -> np.ndarray:
         """Return the matrix row (n_dofs,) of each displacement dim * node + axis."""
-        blocks = compat.cell_blocks(self.space, len(self.original_cell))
+        comm, blocks = MPI.COMM_WORLD, compat.global_blocks(self.space, self._blocks)
         node_block = np.full(len(self.mesh.nodes), -1)
-        node_block[self.mesh.cell_nodes[self.original_cell][:, BASIX_ORDER[self.dim]]] = blocks
+        node_block[gathered(comm, self._nodes)] = gathered(comm, blocks)
         if (node_block < 0).any():
             raise ValueError("the mesh has nodes that belong to no cell; remove them")
-        place = self.space.tabulate_dof_coordinates()[node_block, : self.dim]
-        if np.abs(place - self.mesh.nodes).max() > 1e-9 * np.ptp(self.mesh.nodes):
+        place = self.space.tabulate_dof_coordinates()[self._blocks][..., : self.dim]
+        off = np.abs(place - self.mesh.nodes[self._nodes]).max(initial=0.0, keepdims=True).ravel()
+        if gathered(comm, off).max() > 1e-9 * np.ptp(self.mesh.nodes):
             raise ValueError("a mid-side node is not in the middle of a straight edge of the mesh")
         return (self.dim * node_block[:, None] + np.arange(self.dim)).ravel()
 
@@ -88,6 +94,12 @@ class SoilForms:
             corners[:, None, 0] + np.einsum("qr,cri->cqi", points, edges)
         ).reshape(-1, self.dim)
         self.integration_volumes = np.outer(np.abs(np.linalg.det(edges)), weights).ravel()
+        own_points = self._own_cells[:, None] * len(weights) + np.arange(len(weights))
+        self.partition = Partition(MPI.COMM_WORLD, own_points.ravel())
+        self._node_of_block = np.full(compat.n_blocks(self.space), -1)
+        self._node_of_block[self._blocks] = self._nodes
+        self._is_used = self._node_of_block >= 0
+        self._used_nodes = self._node_of_block[self._is_used]
 
         n_components = len(self._components)
         dx = compat.make_measure(self.domain, DEGREE)
@@ -113,35 +125,36 @@ class SoilForms:
         self.matrix: PETSc.Mat = compat.make_matrix(self._stiffness_form)
 
     def _quadrature_rows(self, function: Any) -> np.ndarray:
-        """Return the row in the values of ``function`` of each integration point (n_q,)."""
-        blocks = compat.cell_blocks(function.function_space, len(self.original_cell))
+        """Return the row in the values of ``function`` of each own integration point (n,)."""
+        blocks = compat.cell_blocks(function.function_space, len(self._cells))
         rows = np.empty_like(blocks)
-        rows[self.original_cell] = blocks
+        rows[self._place] = blocks
         return rows.ravel()
 
     def strain(self, displacement: np.ndarray) -> np.ndarray:
-        """Return the strain (n_q, 6), Mandel, of nodal displacements (node, dim) in m."""
-        self._displacement.x.array[self.row_of_dof] = displacement.ravel()
-        by_cell = compat.evaluate(self._strain, self.domain, len(self.original_cell))
+        """Return the strain (n, 6), Mandel, of nodal displacements (node, dim) in m."""
+        values = self._displacement.x.array.reshape(-1, self.dim)
+        values[self._is_used] = displacement[self._used_nodes]
+        by_cell = compat.evaluate(self._strain, self.domain, len(self._cells))
         in_order = np.empty_like(by_cell)
-        in_order[self.original_cell] = by_cell
-        strain = np.zeros((len(self.integration_volumes), 6))
+        in_order[self._place] = by_cell
+        strain = np.zeros((len(self.partition.own_points), 6))
         strain[:, self._components] = in_order.reshape(len(strain), -1)
         return strain
 
     def internal_force(self, stress: np.ndarray) -> np.ndarray:
-        """Return the nodal forces (node, dim) in N of the Mandel stress (n_q, 6) in Pa."""
+        """Return the nodal forces (node, dim) in N of the Mandel stress (n, 6) in Pa."""
         values = stress[:, self._components]
         self._stress.x.array.reshape(-1, values.shape[1])[self._stress_rows] = values
         return self._assembled(self._force_form)
 
     def weight(self, unit_weight: np.ndarray) -> np.ndarray:
-        """Return the nodal forces (node, dim) in N of gravity, ``unit_weight`` (n_q,) in N/m^3."""
+        """Return the nodal forces (node, dim) in N of gravity, ``unit_weight`` (n,) in N/m^3."""
         self._unit_weight.x.array[self._unit_weight_rows] = unit_weight
         return -self._assembled(self._weight_form)
 
     def stiffness(self, tangent: np.ndarray) -> PETSc.Mat:
-        """Return the stiffness in N/m, rows ``row_of_dof``, of the tangent (n_q, 6, 6) in Pa.
+        """Return the stiffness in N/m, rows ``row_of_dof``, of the tangent (n, 6, 6) in Pa.
 
         The same matrix is filled at each call.
         """
@@ -150,5 +163,13 @@ class SoilForms:
         compat.assemble_into_matrix(self.matrix, self._stiffness_form)
         return self.matrix
 
+    def rigid_modes(self) -> np.ndarray:
+        """Return the nodal displacements (n_dofs, n_motions) of rigid motions."""
+        return rigid_motion(self.mesh.nodes).reshape(self.n_dofs, -1)
+
     def _assembled(self, form: Any) -> np.ndarray:
-        return compat.assemble_into_array(form, self.n_dofs)[self.row_of_dof].reshape(-1, self.dim)
+        """Return the nodal values (node, dim) of a form, of all ranks together."""
+        own = compat.assemble_into_array(form, self.dim * len(self._is_used))
+        total = np.zeros((len(self.mesh.nodes), self.dim))
+        total[self._used_nodes] = own.reshape(-1, self.dim)[self._is_used]
+        return self.partition.sum_of(total)

@@ -13,6 +13,7 @@ import numpy as np
 from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEState
 from install_mpm.newton import convergence_order
 from service_fe.along_pile import Recorder
+from service_fe.coupled_solver import Work
 from service_fe.load_step import Step, Unknowns
 from service_fe.loading import (
     EQUILIBRATED,
@@ -141,6 +142,7 @@ def run_programme(
     ServiceError
         If a step does not converge.
     """
+    problem.model.solver.forget()
     load = problem.pile_load(state)
     steps = imposed_steps(programme, load)
     rows = [_first_row(problem, steps[0].mode, load)]
@@ -150,6 +152,7 @@ def run_programme(
     along.add(state, displacement, rows[0].motion)
     for number, imposed in enumerate(steps, start=1):
         guess = guess.scaled(imposed.size / size) if guess is not None and size else None
+        before = problem.model.solver.work
         try:
             taken = advance(problem, state, imposed, guess)
         except StepNotConvergedError as error:
@@ -160,7 +163,8 @@ def run_programme(
         state, size = taken.last.state, imposed.size
         guess = None if taken.settled else taken.increment
         displacement += taken.increment.displacement
-        rows.append(_row(problem, rows[-1], imposed.mode, taken))
+        work = problem.model.solver.work.since(before)
+        rows.append(_row(problem, rows[-1], imposed.mode, taken, work))
         along.add(state, displacement, rows[-1].motion)
         observe(ServiceProgress(programme.name, number, len(steps), *rows[-1][:4]))
     return ProgrammeResult(
@@ -225,6 +229,7 @@ class _Row(NamedTuple):
     iterations: int
     cuts: int
     settled: int
+    work: Work
     residuals: tuple[float, ...]
     motion: np.ndarray
     load: np.ndarray
@@ -233,10 +238,10 @@ class _Row(NamedTuple):
 def _first_row(problem: ServiceProblem, mode: Mode, load: np.ndarray) -> _Row:
     whole = problem.whole_body * load
     head_load = float(mode.measure @ (whole @ mode.frame))
-    return _Row(0.0, head_load, 0, 0, 0, (), np.zeros(len(load)), whole)
+    return _Row(0.0, head_load, 0, 0, 0, Work(), (), np.zeros(len(load)), whole)
 
 
-def _row(problem: ServiceProblem, before: _Row, mode: Mode, taken: Advance) -> _Row:
+def _row(problem: ServiceProblem, before: _Row, mode: Mode, taken: Advance, work: Work) -> _Row:
     moved = taken.increment.motion
     load = problem.whole_body * taken.last.pile_load
     return _Row(
@@ -245,6 +250,7 @@ def _row(problem: ServiceProblem, before: _Row, mode: Mode, taken: Advance) -> _
         taken.iterations,
         taken.cuts,
         taken.settled,
+        work,
         taken.last.residuals,
         before.motion + moved,
         load,
@@ -264,7 +270,16 @@ def _curve(rows: Sequence[_Row]) -> Curve:
         convergence_order=np.array([convergence_order(np.array(row.residuals)) for row in rows]),
         cuts=np.array([row.cuts for row in rows], dtype=np.int64),
         settled=np.array([row.settled for row in rows], dtype=np.int64),
+        **_work_of([row.work for row in rows]),
         residual_history=history,
         motion=np.array([row.motion for row in rows]),
         load=np.array([row.load for row in rows]),
     )
+
+
+def _work_of(steps: Sequence[Work]) -> dict[str, np.ndarray]:
+    """Return the work of the linear solver, one array (load_step,) for each of its counts."""
+    return {
+        name: np.array(counts, dtype=np.int64)
+        for name, counts in zip(Work._fields, zip(*steps, strict=True), strict=True)
+    }

@@ -14,7 +14,14 @@ from install_mpm.pile import PilePart
 from install_mpm.state_file import InstalledState
 from service_fe.loading import RELEASED
 from service_fe.options import Displace, Lateral, Rotate
-from service_fe.results import Curve, ProgrammeResult, ServiceResult, characteristics, head_load_at
+from service_fe.results import (
+    LINEAR_WORK,
+    Curve,
+    ProgrammeResult,
+    ServiceResult,
+    characteristics,
+    head_load_at,
+)
 from workflows.case import AnyCase
 from workflows.screw_theory import driven
 
@@ -178,6 +185,7 @@ def convergence(installed: InstalledState, results: list[ServiceResult]) -> dict
                 entry.programme.name: {
                     **convergence_figures(entry.curve),
                     "settled_steps": int(np.count_nonzero(entry.curve.settled)),
+                    **{name: int(getattr(entry.curve, name).sum()) for name in LINEAR_WORK},
                 }
                 for entry in result.programmes
             }

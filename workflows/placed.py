@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from handoff.placed_pile import PlacedFlatPile, PlacedPile, PlacedScrewPile
 from install_mpm.screw_programme import corners, is_loaded
 from workflows.case import AnyCase
+from workflows.ranks import on_first
 from workflows.screw_case import ScrewCase
 from workflows.screw_theory import driven
 
@@ -66,8 +67,9 @@ def loaded_in_service(
     assert case.service is not None
     if case.service.pile is None:
         return problem, state
+    inside = on_first(lambda: mesh_of_pile(problem.mesh))
     model = deformable_model(
-        problem.mesh, mesh_of_pile(problem.mesh), case.service.pile, case.ground, case.interface,
+        problem.mesh, inside, case.service.pile, case.ground, case.interface,
         placed.weight(case.ground.water_table), kinematics=placed.kinematics,
         normals=placed.normals, numerics=case.service.numerics,
     )  # fmt: skip

@@ -17,6 +17,7 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
+from workflows.ranks import is_first
 from workflows.report_units import FORCE_UNIT
 
 if TYPE_CHECKING:
@@ -53,10 +54,10 @@ def service_observer(case: AnyCase, advance: Advance) -> Callable[[Any], None]:
 
 
 class Reporter:
-    """Shows the progress of stages on a console."""
+    """Shows the progress of stages on a console, by default that of the first rank."""
 
     def __init__(self, console: Console | None = None) -> None:
-        self.console = console or Console(highlight=False)
+        self.console = console or Console(highlight=False, quiet=not is_first())
 
     @contextmanager
     def stage(self, name: str, doing: str) -> Iterator[Advance]:

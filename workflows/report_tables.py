@@ -8,6 +8,7 @@ from typing import Any, get_args, get_type_hints
 
 from install_mpm.conventions import Kinematics, Unit
 from service_fe.options import Displace, Programme, Release
+from service_fe.results import LINEAR_WORK
 from workflows.case import Case
 from workflows.report_data import Results
 from workflows.report_html import Cell, badge, cell, number, table
@@ -168,7 +169,8 @@ def certificate_table(
 def convergence_table(convergence: dict[str, Any]) -> str:
     """Return the statistics of Newton's method in the installation and in every programme."""
     head: Row = ["", *map(number, ("steps", "iterations, mean", "halvings", "largest residual",
-                                   "order, median", "order ≥ 1.8"))]  # fmt: skip
+                                   "order, median", "order ≥ 1.8", "factorisations", "GMRES",
+                                   "fallbacks to MUMPS"))]  # fmt: skip
     rows = [_convergence_row("installation", convergence["installation"])]
     for model in MODELS:
         for name, figures in convergence.get(model, {}).items():
@@ -186,6 +188,7 @@ def _convergence_row(name: str, figures: dict[str, Any]) -> Row:
         "–" if order is None else significant(order, 3),
         "–" if share is None
         else f"{100.0 * share:.0f} % of {figures['steps_with_known_order']}",
+        *(str(figures.get(name, "–")) for name in LINEAR_WORK),
     )  # fmt: skip
     return [name, *map(number, texts)]
 

@@ -22,6 +22,7 @@ from workflows.manifest import (
 )
 from workflows.placed import is_end_given
 from workflows.progress import Reporter
+from workflows.ranks import check_ranks, is_first
 from workflows.screw_case import ScrewCase
 from workflows.state_files import STATE_FILES, case_for, check_existing, read_checked
 
@@ -232,6 +233,7 @@ def run_stage(stage: Stage, case: AnyCase, directory: Path, reporter: Reporter) 
     DirectoryError, StateFileError
         If a file that it reads is missing, damaged, out of date or of another case.
     """
+    check_ranks(stage.name, stage.command)
     check_present(stage, case, directory)
     check_made_from_each_other(stage, case, directory)
     inputs = inputs_of(stage, case, directory)
@@ -240,6 +242,8 @@ def run_stage(stage: Stage, case: AnyCase, directory: Path, reporter: Reporter) 
         remarks = import_module(f"workflows.stages.{stage.name}").run(case, directory, advance)
     for remark in remarks:
         reporter.say(f"{'':<9} {remark}")
+    if not is_first():
+        return
     manifest = read_manifest(directory)
     manifest.stages[stage.name] = StageRecord(
         inputs=inputs,
@@ -282,6 +286,7 @@ def run_case(
         the service stage, if the certificate has failed and this is not accepted.
     """
     reporter = reporter or Reporter()
+    check_ranks("run", "screwpile run")
     check_ownership(directory, case)
     check_existing(directory, case)
     claim(directory, case)
@@ -310,11 +315,14 @@ def run_from_case(
     DirectoryError
         Before anything runs, if ``directory`` holds another case's results.
     """
+    stage = stage_named(name, case)
+    check_ranks(stage.name, stage.command)
     check_ownership(directory, case)
-    claim(directory, case)
+    if is_first():
+        claim(directory, case)
     if name == "install" and not resume:
         (directory / names.CHECKPOINT).unlink(missing_ok=True)
-    run_stage(stage_named(name, case), case, directory, reporter or Reporter())
+    run_stage(stage, case, directory, reporter or Reporter())
 
 
 def run_from_files(

@@ -8,9 +8,13 @@ from collections.abc import Callable
 import typer
 
 from workflows.environment import prepare
+from workflows.ranks import end_after, n_ranks
 
 USER_ERROR = 2
 """Exit status after an error that the user can mend."""
+
+CRASHED = 1
+"""Exit status after an error that is not the user's."""
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C."""
@@ -50,7 +54,8 @@ def run_as_command(command: typer.Typer) -> None:
             print("screwpile: stopped", file=sys.stderr)
         raise
     except Exception as error:
-        if not is_user_error(error):
-            raise
-        print(f"screwpile: {' '.join(str(error).split())}", file=sys.stderr)
-        sys.exit(USER_ERROR)
+        if is_user_error(error):
+            end_after(error, f"screwpile: {' '.join(str(error).split())}", USER_ERROR)
+        if n_ranks() > 1:
+            end_after(error, None, CRASHED)
+        raise

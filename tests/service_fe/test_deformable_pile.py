@@ -54,8 +54,7 @@ def tags_of(centres):
     return tags
 
 
-@pytest.fixture(scope="module")
-def meshes():
+def square_meshes():
     """A square pile of 0.8 m, 0.8 m deep, in a cube of 2 m: the soil, and the pile itself."""
     across = np.array([-1.0, -HALF, 0.0, HALF, 1.0])
     solid = extruded(grid(across, across), np.array([-SIZE, -1.3, -TIP, -0.4, 0.0]))
@@ -71,6 +70,11 @@ def meshes():
     vertices, cells = np.unique(inside.cell_nodes[:, :4], return_inverse=True)
     pile = pile_mesh(inside.nodes[vertices], cells.reshape(-1, 4))
     return soil, with_twins(pile, soil)
+
+
+@pytest.fixture(scope="module")
+def meshes():
+    return square_meshes()
 
 
 def model_of(meshes, modulus, contact="interface", law=ROUGH, ground=GROUND):

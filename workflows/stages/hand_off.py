@@ -18,6 +18,7 @@ from workflows.directory import CERTIFICATE, HANDED_OFF, INSTALLED, write_text
 from workflows.manifest import created_by
 from workflows.placed import placed_pile, service_problem
 from workflows.progress import Advance, no_progress
+from workflows.ranks import is_first, on_first
 from workflows.state_files import read_checked
 
 PHASES = ("mesh", "transfer", "admissibility", "equilibration", "certificate")
@@ -46,10 +47,12 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
         case.handoff,
         lambda mesh: service_problem(case, placed, mesh),
         observe=lambda phase: advance(PHASES.index(phase), len(PHASES), phase),
+        once=on_first,
     )
     handed_off = handed_off._replace(case_text=case_text(case))
-    write_handed_off_state(directory / HANDED_OFF, handed_off, created_by())
-    write_text(directory / CERTIFICATE, as_json(certificate))
+    if is_first():
+        write_handed_off_state(directory / HANDED_OFF, handed_off, created_by())
+        write_text(directory / CERTIFICATE, as_json(certificate))
     return failed_checks(certificate)
 
 

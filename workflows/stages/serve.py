@@ -20,6 +20,7 @@ from workflows.directory import HANDED_OFF, SERVICE
 from workflows.manifest import created_by
 from workflows.placed import loaded_in_service, placed_pile, service_problem
 from workflows.progress import Advance, no_progress, service_observer
+from workflows.ranks import is_first
 from workflows.state_files import read_checked
 
 
@@ -49,8 +50,9 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
         model="installed",
         case_text=case_text(case),
     )
-    write_service_result(directory / SERVICE, result, created_by())
-    return settled_notes(result)
+    if is_first():
+        write_service_result(directory / SERVICE, result, created_by())
+    return settled_notes(result) + fallback_notes(result)
 
 
 def settled_notes(result: ServiceResult) -> list[str]:
@@ -62,6 +64,16 @@ def settled_notes(result: ServiceResult) -> list[str]:
     return [
         f"{name}: {count} steps were settled with damping"
         for name, count in settled.items()
+        if count
+    ]
+
+
+def fallback_notes(result: ServiceResult) -> list[str]:
+    """Return a line for each programme in which multigrid failed."""
+    counts = {entry.programme.name: int(entry.curve.fallbacks.sum()) for entry in result.programmes}
+    return [
+        f"{name}: multigrid failed {count} times, and MUMPS took over"
+        for name, count in counts.items()
         if count
     ]
 

@@ -27,8 +27,9 @@ from workflows.placed import (
     service_problem,
 )
 from workflows.progress import Advance, no_progress, service_observer
+from workflows.ranks import is_first, on_first
 from workflows.screw_case import ScrewCase
-from workflows.stages.serve import settled_notes
+from workflows.stages.serve import fallback_notes, settled_notes
 from workflows.state_files import read_checked
 
 
@@ -47,9 +48,10 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     assert case.handoff is not None
     assert case.service is not None
     placed = _placed(case, directory)
-    mesh = placed.mesh(case.box, case.handoff, level_surface(), boundary_depths(case.ground))
+    options, boundaries = case.handoff, boundary_depths(case.ground)
+    mesh = on_first(lambda: placed.mesh(case.box, options, level_surface(), boundaries))
     rigid = service_problem(case, placed, mesh)
-    undisturbed = wished_in_place(case.ground, case.interface, rigid, case.handoff)
+    undisturbed = wished_in_place(case.ground, case.interface, rigid, options)
     problem, state = loaded_in_service(case, placed, rigid, undisturbed)
     result = run_programmes(
         problem,
@@ -59,9 +61,10 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
         model="wished_in_place",
         case_text=case_text(case),
     )
-    (directory / WISHED).mkdir(exist_ok=True)
-    write_service_result(directory / WISHED_SERVICE, result, created_by())
-    return settled_notes(result)
+    if is_first():
+        (directory / WISHED).mkdir(exist_ok=True)
+        write_service_result(directory / WISHED_SERVICE, result, created_by())
+    return settled_notes(result) + fallback_notes(result)
 
 
 def _placed(case: AnyCase, directory: Path) -> PlacedPile:
