@@ -47,6 +47,7 @@ def assert_close(one, two):
         np.testing.assert_allclose(second, first, rtol=0, atol=1e-8 * scale, err_msg=name)
 
 
+@pytest.mark.slow
 def test_two_ranks_hand_over_and_serve_as_one_does(results_copy, tmp_path):
     other = Path(shutil.copytree(results_copy, tmp_path / "other"))
     for stage, command in (("hand_off", "handoff"), ("serve", "serve")):
