@@ -1,9 +1,8 @@
-"""The stages in order: which are up to date, what each depends on, and their record."""
+"""Runs the stages in order: which are up to date, and their record."""
 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 
@@ -11,7 +10,7 @@ from workflows import directory as names
 from workflows.case import AnyCase, sections_text
 from workflows.certified import check_certified
 from workflows.directory import check_ownership, claim
-from workflows.errors import CaseError, DirectoryError
+from workflows.errors import DirectoryError
 from workflows.manifest import (
     StageRecord,
     code_hash,
@@ -20,148 +19,10 @@ from workflows.manifest import (
     text_hash,
     write_manifest,
 )
-from workflows.placed import is_end_given
 from workflows.progress import Reporter
 from workflows.ranks import check_ranks, is_first
-from workflows.screw_case import ScrewCase
+from workflows.stage_table import STAGES, Stage, stage_named, stages_of
 from workflows.state_files import STATE_FILES, case_for, check_existing, read_checked
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One arrow of the data flow: files in, files out."""
-
-    name: str
-    """Name of its module in ``workflows.stages``."""
-    command: str
-    """Command that runs it alone."""
-    doing: str
-    keys: tuple[str, ...]
-    """Keys of the case that it depends on."""
-    reads: tuple[str, ...]
-    writes: tuple[str, ...]
-    sources: tuple[str, ...]
-    """Packages and files whose code decides its results."""
-
-
-NUMERICS = ("install_mpm", "handoff", "service_fe")
-
-STAGES = (
-    Stage(
-        "install", "screwpile install CASE", "jack the pile into the ground", names.INSTALL_KEYS,
-        reads=(), writes=(names.INSTALLED,),
-        sources=("install_mpm", "workflows/stages/install.py"),
-    ),
-    Stage(
-        "hand_off", "screwpile handoff DIR", "hand the ground over to finite elements",
-        names.HANDOFF_KEYS,
-        reads=(names.INSTALLED,), writes=(names.HANDED_OFF, names.CERTIFICATE),
-        sources=(*NUMERICS, "workflows/stages/hand_off.py"),
-    ),
-    Stage(
-        "serve", "screwpile serve DIR", "load the installed pile in service", names.SERVICE_KEYS,
-        reads=(names.HANDED_OFF,), writes=(names.SERVICE,),
-        sources=(*NUMERICS, "workflows/stages/serve.py"),
-    ),
-    Stage(
-        "wished", "screwpile wished CASE", "load the same pile wished in place", names.WISHED_KEYS,
-        reads=(), writes=(names.WISHED_SERVICE,),
-        sources=(*NUMERICS, "workflows/stages/wished.py"),
-    ),
-    Stage(
-        "compare", "screwpile compare DIR", "compare the two", ("title", *names.SERVICE_KEYS),
-        reads=(names.INSTALLED, names.CERTIFICATE, names.SERVICE, names.WISHED_SERVICE),
-        writes=(names.CURVES, names.WISHED_CURVES, names.SUMMARY),
-        sources=(*NUMERICS, "workflows/stages/compare.py", "workflows/compare.py"),
-    ),
-    Stage(
-        "export", "screwpile export DIR", "write views for ParaView", names.SERVICE_KEYS,
-        reads=(names.INSTALLED, names.SERVICE, names.WISHED_SERVICE),
-        writes=(
-            names.VIEW_POINTS, names.VIEW_BACKGROUND, names.VIEW_INSTALLED, names.VIEW_WISHED
-        ),
-        sources=("workflows/stages/export.py", "workflows/export.py"),
-    ),
-    Stage(
-        "report", "screwpile report DIR", "write the report", ("title", *names.SERVICE_KEYS),
-        reads=(
-            names.INSTALLED, names.HANDED_OFF, names.CERTIFICATE, names.SERVICE,
-            names.WISHED_SERVICE, names.CURVES, names.SUMMARY,
-        ),
-        writes=(names.REPORT,),
-        sources=("workflows",),
-    ),
-)  # fmt: skip
-
-
-INSTALL_SCREW, EXPORT_SCREW, REPORT_SCREW = (
-    Stage(
-        "install", "screwpile install CASE", "screw the pile into the ground", names.INSTALL_KEYS,
-        reads=(), writes=(names.INSTALLED,),
-        sources=("install_mpm", "workflows/stages/install.py"),
-    ),
-    Stage(
-        "export", "screwpile export DIR", "write views for ParaView", names.INSTALL_KEYS,
-        reads=(names.INSTALLED,), writes=names.SCREW_VIEWS,
-        sources=(
-            "workflows/stages/export.py", "workflows/export.py", "workflows/screw_export.py",
-            "workflows/screw_frames.py",
-        ),
-    ),
-    Stage(
-        "report", "screwpile report DIR", "write the report", ("title", *names.INSTALL_KEYS),
-        reads=(names.INSTALLED,), writes=(names.REPORT,), sources=("workflows",),
-    ),
-)  # fmt: skip
-
-SCREW_STAGES = (INSTALL_SCREW, EXPORT_SCREW, REPORT_SCREW)
-"""Stages of a screw pile that is installed only."""
-
-SCREW_SERVICE_STAGES = (
-    INSTALL_SCREW,
-    *(stage for stage in STAGES if stage.name in ("hand_off", "serve", "wished", "compare")),
-    replace(
-        EXPORT_SCREW, keys=names.SERVICE_KEYS,
-        reads=(names.INSTALLED, names.SERVICE, names.WISHED_SERVICE),
-        writes=(*names.SCREW_VIEWS, names.VIEW_INSTALLED, names.VIEW_WISHED),
-    ),
-    replace(
-        REPORT_SCREW, keys=("title", *names.SERVICE_KEYS),
-        reads=next(stage.reads for stage in STAGES if stage.name == "report"),
-    ),
-)  # fmt: skip
-"""Stages of a screw pile that is loaded in service."""
-
-
-def stages_of(case: AnyCase) -> tuple[Stage, ...]:
-    """Return the stages of a case, in order."""
-    if not isinstance(case, ScrewCase):
-        return STAGES
-    if case.service is None:
-        return SCREW_STAGES
-    if is_end_given(case):
-        return SCREW_SERVICE_STAGES
-    return tuple(
-        replace(stage, reads=(names.INSTALLED,)) if stage.name == "wished" else stage
-        for stage in SCREW_SERVICE_STAGES
-    )
-
-
-def stage_named(name: str, case: AnyCase) -> Stage:
-    """Return the stage of ``case`` called ``name``.
-
-    Raises
-    ------
-    CaseError
-        If a case of its kind has no such stage.
-    """
-    for stage in stages_of(case):
-        if stage.name == name:
-            return stage
-    known = ", ".join(stage.name for stage in stages_of(case))
-    raise CaseError(
-        f"{case.title}: there is no stage {name!r} without [handoff] and [service]; it has {known}"
-    )
 
 
 def inputs_of(stage: Stage, case: AnyCase, directory: Path) -> dict[str, str]:

@@ -13,7 +13,8 @@ from rich.console import Console
 from workflows.case import read_case
 from workflows.directory import TIMING
 from workflows.progress import Reporter
-from workflows.runner import STAGES, is_up_to_date, run_case, run_from_case, run_from_files
+from workflows.runner import is_up_to_date, run_case, run_from_case, run_from_files
+from workflows.stage_table import STAGES
 
 pytestmark = pytest.mark.dolfinx
 

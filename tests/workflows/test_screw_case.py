@@ -13,8 +13,8 @@ from workflows import cli
 from workflows.case import case_text, parse_case, read_case
 from workflows.errors import CaseError
 from workflows.placed import is_end_given
-from workflows.runner import stage_named, stages_of
 from workflows.screw_case import ScrewCase, check_screw_case
+from workflows.stage_table import stage_named, stages_of
 
 CASES = Path(__file__).parents[2] / "cases"
 QUICK = CASES / "screwpile_quick.toml"
