@@ -41,15 +41,9 @@ def choose(identifiers: Sequence[str], is_quick: bool) -> list[Problem]:
     Raises
     ------
     CaseError
-        If a name is unknown, needs a package that is not installed, or none is left.
+        If a name is unknown, or none is left.
     """
     named = [registry.problem(name) for name in dict.fromkeys(identifiers)]
-    for problem in named:
-        if not problem.is_available:
-            raise CaseError(
-                f"{problem.identifier} needs the package {problem.needs}; install the extra that "
-                f"brings it, see [project.optional-dependencies] of pyproject.toml"
-            )
     available = [problem for problem in registry.problems().values() if problem.is_available]
     chosen = list({problem.identifier: problem for problem in named or available}.values())
     chosen = [problem for problem in chosen if problem.is_quick or not is_quick]
@@ -57,6 +51,15 @@ def choose(identifiers: Sequence[str], is_quick: bool) -> list[Problem]:
         names = ", ".join(problem.identifier for problem in named)
         raise CaseError(f"none of {names} is a quick problem; leave out --quick")
     return chosen
+
+
+def _require_packages(runs: Iterable[Run]) -> None:
+    for problem in (run.problem for run in runs):
+        if not problem.is_available:
+            raise CaseError(
+                f"{problem.identifier} needs the package {problem.needs}; install the extra that "
+                f"brings it, see [project.optional-dependencies] of pyproject.toml"
+            )
 
 
 def runs_of(arguments: Sequence[str], is_quick: bool) -> list[Run]:
@@ -91,8 +94,8 @@ def verify_problems(
     Raises
     ------
     CaseError
-        If a problem or a parameter is unknown, a value does not suit, or a file cannot be written
-        or read.
+        If a problem or a parameter is unknown, a value does not suit, a package is missing, or a
+        file cannot be written or read.
     """
     arguments, assignments = list(arguments), list(overrides)
     assignments += [text for text in arguments if "=" in text]
@@ -102,6 +105,7 @@ def verify_problems(
     if assignments:
         values = read_assignments(chosen[0].problem, assignments)
         chosen = [replace(chosen[0], values={**chosen[0].values, **values})]
+    _require_packages(chosen)
     for file in files:
         if file is not None:
             _make_folder(file)
