@@ -73,7 +73,7 @@ class Numerics:
     volumetric_term: Annotated[float, Ge(0)] = 0.1
     """Stiffness h_v of the volumetric term, of a step only, over Young's modulus."""
     fill_threshold: Share = 0.3
-    soft_stiffness: Annotated[float, Ge(0)] = 2e-2
+    soft_stiffness: Annotated[float, Ge(0)] = 1e-2
     """Stiffness, of a step only, of partly filled cells over Young's modulus and missing share."""
     open_stiffness: Annotated[float, Ge(0)] = 0.0
     """Stiffness, of a step only, of soil that has opened at its apex over Young's modulus."""
@@ -96,6 +96,8 @@ class ScrewNumerics(Numerics):
 
     tolerance: Annotated[float, Gt(0), Le(1e-3)] = 1e-4
     """Sand that leaves the pile converges slowly from there on, in a few cells at its apex."""
+    soft_stiffness: Annotated[float, Ge(0)] = 2e-2
+    """As stiff in shear as in the plane: here partly filled cells do not resist their turning."""
 
 
 @dataclass(frozen=True)

@@ -52,6 +52,7 @@ def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisatio
         is_finite_strain=model.is_finite_strain,
         has_mean_dilatation=model.has_mean_dilatation and model.is_finite_strain,
         is_axisymmetric=model.kinematics == Kinematics.AXISYMMETRIC,
+        has_moment_free_soft_stress=model.compares_resultants,
         volumetric_term=model.numerics.volumetric_term * modulus,
         soft_stiffness=SHEAR_OVER_YOUNGS
         * modulus

@@ -24,6 +24,8 @@ class CellOptions(NamedTuple):
     has_mean_dilatation: bool
     """Element-mean dilatation; only with finite strain."""
     is_axisymmetric: bool
+    has_moment_free_soft_stress: bool
+    """Partly filled cells resist strain only, not their own turning."""
     volumetric_term: np.ndarray
     """h_v of each cell, (n_cells,) in Pa."""
     soft_stiffness: np.ndarray

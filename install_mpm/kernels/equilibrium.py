@@ -40,7 +40,7 @@ from install_mpm.kernels.cell_records import (
     dilatation_axes,
     make_scratch,
 )
-from install_mpm.kernels.soft_stress import add_soft_stress
+from install_mpm.kernels.soft_stress import add_gradient_stiffness, add_soft_stress
 
 
 @parallel_jit
@@ -102,10 +102,15 @@ def _evaluate_cell(
         )  # fmt: skip
     if modulus > 0.0:
         add_mean_modes(modulus * cell_strain, scratch, stiffness)
-    if options.soft_stiffness[c] > 0.0:
+    if options.soft_stiffness[c] > 0.0 and options.has_moment_free_soft_stress:
         add_soft_stress(
             first, last, options.soft_stiffness[c], cell_nodes, points, displacement, options,
             scratch, force, stiffness,
+        )  # fmt: skip
+    elif options.soft_stiffness[c] > 0.0:
+        add_gradient_stiffness(
+            first, last, options.soft_stiffness[c], cell_nodes, points, displacement, force,
+            stiffness,
         )  # fmt: skip
 
 

@@ -23,6 +23,7 @@ OPTIONS = {
     "mean dilatation": {"mean": True},
     "volumetric term": {"mean": True, "volumetric": 200.0},
     "soft": {"soft": 3.0},
+    "soft, held in rotation too": {"soft": 3.0, "moment_free": False},
     "all terms": {"mean": True, "volumetric": 200.0, "soft": 3.0},
     "small strain": {"finite": False, "soft": 3.0},
     "axisymmetric": {"axisymmetric": True},
@@ -73,10 +74,14 @@ def integration_points(mesh, rng, soil, *, random_start=True, kinematics=Kinemat
     )
 
 
-def cell_options(n_cells, *, finite=True, mean=False, axisymmetric=False, volumetric=0.0, soft=0.0):
+def cell_options(
+    n_cells, *, finite=True, mean=False, axisymmetric=False, moment_free=True, volumetric=0.0,
+    soft=0.0,
+):  # fmt: skip
     return CellOptions(
-        finite, mean, axisymmetric, np.full(n_cells, volumetric), np.full(n_cells, soft)
-    )
+        finite, mean, axisymmetric, moment_free, np.full(n_cells, volumetric),
+        np.full(n_cells, soft),
+    )  # fmt: skip
 
 
 def evaluate(mesh, points, soil, displacement, options, is_active=None):
@@ -110,7 +115,10 @@ def of_tensor(function, tensor):
 
 
 def soft_force(gradients, hoop, increments, options, c):
-    """Force of the soft stress: F S G with S = k (F^T F - 1), or its linear part."""
+    """Force of the soft stress: F S G with S = k (F^T F - 1), or its linear part; or 2 k H G."""
+    if not options.has_moment_free_soft_stress:
+        force = 2.0 * np.einsum("qij,qaj->ai", (increments - np.eye(3))[:, :2, :2], gradients)
+        return options.soft_stiffness[c] * force
     if options.is_finite_strain:
         strain = increments.transpose(0, 2, 1) @ increments - np.eye(3)
         first = increments @ strain

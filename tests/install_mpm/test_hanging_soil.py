@@ -59,7 +59,7 @@ def n_free_motions(mesh, takes_part):
         material=np.zeros(n_points, dtype=np.int64),
     )
     force, stiffness = np.zeros((n_cells, 6, 2)), np.zeros((n_cells, 6, 2, 6, 2))
-    options = CellOptions(True, True, False, np.zeros(n_cells), np.ones(n_cells))
+    options = CellOptions(True, True, False, True, np.zeros(n_cells), np.ones(n_cells))
     evaluate_cells(
         mesh.cell_nodes, takes_part, points, np.zeros_like(mesh.nodes), dispatch.pack([SOIL]),
         options, force, stiffness, empty_trial(points),

@@ -106,7 +106,7 @@ def test_tangent_is_the_derivative_of_the_force(soil, has_mean, rng):
     points = integration_points(mesh, rng, soil)
     n_cells = len(mesh.cell_nodes)
     options = CellOptions(
-        True, has_mean, False, np.full(n_cells, 200.0 * has_mean), np.full(n_cells, 0.3)
+        True, has_mean, False, True, np.full(n_cells, 200.0 * has_mean), np.full(n_cells, 0.3)
     )
     turn = np.array([[0.8, -0.6, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]])  # a large rotation
     displacement = mesh.nodes @ (turn - np.eye(3)).T + rng.normal(size=mesh.nodes.shape) * 0.01
@@ -125,7 +125,7 @@ def test_rigid_motion_leaves_stress_and_force_as_they_are(rng):
     mesh = box_mesh((1, 1, 1), (1.0, 1.0, 1.0))
     points = integration_points(mesh, rng, soil)
     n_cells = len(mesh.cell_nodes)
-    options = CellOptions(True, True, False, np.full(n_cells, 200.0), np.zeros(n_cells))
+    options = CellOptions(True, True, False, True, np.full(n_cells, 200.0), np.zeros(n_cells))
     at_rest, _ = evaluate(mesh, points, soil, np.zeros_like(mesh.nodes), options)
     axis = np.array([1.0, 2.0, 2.0]) / 3.0
     cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
