@@ -221,7 +221,7 @@ def accept(
     _check_place(problem, target, pose)
     interface = screw_surface.follow(
         result.interface, problem.model.elements, problem.normals, pose.rotation, result.mesh,
-        problem.ground, problem.law,
+        problem.ground, problem.law, problem.strength_share,
     )  # fmt: skip
     displaced = result.equilibrium.displacement @ rotation_matrix(motion.rotation, 3).T
     row = history_row(problem, state, result, target, pose)

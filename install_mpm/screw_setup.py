@@ -14,6 +14,7 @@ from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient
+from install_mpm.exact_patches import strength_shares
 from install_mpm.geostatic import geostatic_gradient
 from install_mpm.ground import GroundProfile, soils_of
 from install_mpm.history import empty_history
@@ -52,6 +53,8 @@ class ScrewInstallation(NamedTuple):
     """Part of the pile surface of each interface element, (n_elements,)."""
     normals: np.ndarray
     """Of the interface points at zero pile motion, (n_points, 3)."""
+    strength_share: np.ndarray
+    """Of the exact surface at the interface points, (n_points,), see ``exact_patches``."""
 
 
 def set_up(
@@ -83,6 +86,7 @@ def set_up(
         zones=mesh_zones(pile, box),
         part=part,
         normals=normals,
+        strength_share=strength_shares(pile, elements, part, mesh.reference_nodes),
     )  # fmt: skip
 
 
@@ -140,7 +144,7 @@ def geostatic_state(
         background_mesh=mesh,
         interface=screw_surface.initial_interface(
             problem.model.elements, problem.part, problem.normals, mesh, problem.ground,
-            problem.law,
+            problem.law, problem.strength_share,
         ),
         pile=PileState(np.array(0.0), np.array(0.0), np.array(problem.pile.embedment), np.zeros(3)),
         history=empty_history(ScrewHistory),

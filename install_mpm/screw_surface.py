@@ -10,6 +10,7 @@ from install_mpm.background_mesh import (
     facets_opposite_vertices,
 )
 from install_mpm.constitutive import coulomb_interface
+from install_mpm.constitutive.coulomb_interface import COHESION, TAN_FRICTION
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import rotation_matrix
 from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
@@ -138,15 +139,19 @@ def initial_interface(
     mesh: BackgroundMesh,
     ground: GroundProfile,
     law: CoulombInterface,
+    share: np.ndarray,
 ) -> InterfacePoints:
-    """Return the interface of a pile wished in place: the geostatic traction acts on its facets."""
+    """Return the interface of a pile wished in place: the geostatic traction acts on its facets.
+
+    ``share`` (n_points,) is that of ``exact_patches.strength_shares``.
+    """
     position, area, facet_normal = place_points(elements, mesh)
     points = InterfacePoints(
         position=position,
         normal=normals,
         area=area,
         traction=np.zeros_like(position),
-        parameters=coulomb_interface.pack(law, undrained_shear_strength(ground, position[:, 2])),
+        parameters=_parameters(law, ground, position[:, 2], share),
         part=np.repeat(part, len(elements.weights)),
         covered=(position[:, 2] < 0.0).astype(np.float64),
     )
@@ -163,17 +168,26 @@ def follow(
     mesh: BackgroundMesh,
     ground: GroundProfile,
     law: CoulombInterface,
+    share: np.ndarray,
 ) -> InterfacePoints:
     """Return the interface at its place on the moved mesh.
 
     ``normals`` (n, 3) are those at zero pile motion, ``angle`` is the rotation of the pile in rad;
-    the adhesion is that of the level.
+    the adhesion is that of the level, times the ``share`` (n,) of ``strength_shares``.
     """
     position, area, _ = place_points(elements, mesh)
-    strength = undrained_shear_strength(ground, position[:, 2])
     return points._replace(
         position=position,
         normal=normals @ rotation_matrix(angle, 3).T,
         area=area,
-        parameters=coulomb_interface.pack(law, strength),
+        parameters=_parameters(law, ground, position[:, 2], share),
     )
+
+
+def _parameters(
+    law: CoulombInterface, ground: GroundProfile, height: np.ndarray, share: np.ndarray
+) -> np.ndarray:
+    """Return the packed parameters (n, 7) at ``height`` (n,) in m; ``share`` (n,) of strength."""
+    parameters = coulomb_interface.pack(law, undrained_shear_strength(ground, height))
+    parameters[:, [COHESION, TAN_FRICTION]] *= share[:, None]
+    return parameters

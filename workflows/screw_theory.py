@@ -15,6 +15,7 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from install_mpm.constitutive.coulomb_interface import COHESION, TAN_FRICTION
+from install_mpm.exact_patches import strength_shares
 from install_mpm.interface import InterfacePoints
 from install_mpm.screw_history import ScrewHistory
 from install_mpm.screw_pile import (
@@ -31,6 +32,7 @@ from install_mpm.screw_pile import (
     part_names,
 )
 from install_mpm.screw_record import plate_volume
+from install_mpm.screw_surface import pile_elements
 from install_mpm.state_file import InstalledState
 from workflows.screw_frames import PileSurface
 from workflows.verification.references.screw_pile import helix_resistance, shaft_resistance
@@ -100,7 +102,9 @@ def part_torques(
     forms = {}
     if surface is not None or not has_friction(interface):
         pressure = None if surface is None else surface.pressure.ravel()
-        tau = shear_limits(interface, pressure, n_parts)
+        elements, part, _ = pile_elements(installed.background_mesh, pile)
+        share = strength_shares(pile, elements, part, installed.background_mesh.reference_nodes)
+        tau = shear_limits(interface, pressure, n_parts, share)
         depth = pile.embedment + float(history.penetration[-1])
         forms = closed_forms(pile, depth, last_motion(pile, history), tau)
     area = np.bincount(interface.part, interface.area, n_parts)
@@ -198,17 +202,19 @@ def _free_shaft_length(pile: ScrewPile, tip_depth: float) -> float:
     return tip_depth - pile.tip_length - covered
 
 
-def shear_limits(points: InterfacePoints, pressure: np.ndarray | None, n_parts: int) -> np.ndarray:
+def shear_limits(
+    points: InterfacePoints, pressure: np.ndarray | None, n_parts: int, share: np.ndarray
+) -> np.ndarray:
     """Return the mean shear limit (n_parts,) in Pa of each part below the surface.
 
     The cohesion of the interface and, with friction, the contact ``pressure`` (n_points,) in Pa
-    times tan(phi).
+    times tan(phi), without the ``share`` (n_points,) of the exact surface that facets stand for.
     """
     area = points.area * points.covered * (points.position[:, 2] < 0.0)
     limit = points.parameters[:, COHESION]
     if pressure is not None:
         limit = limit + points.parameters[:, TAN_FRICTION] * np.maximum(pressure, 0.0)
-    total = np.bincount(points.part, area * limit, n_parts)
+    total = np.bincount(points.part, area * limit / share, n_parts)
     covered = np.bincount(points.part, area, n_parts)
     mean: np.ndarray = total / np.where(covered > 0.0, covered, 1.0)
     return mean

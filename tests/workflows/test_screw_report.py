@@ -88,7 +88,7 @@ def states(case, mesh):
         moved = move_mesh(problem, mesh, pose)
         interface = follow(
             state.interface, problem.model.elements, problem.normals, pose.rotation, moved,
-            case.ground, case.interface,
+            case.ground, case.interface, problem.strength_share,
         )  # fmt: skip
         slide = np.array([0.01, 0.0, -0.02]) * number / STEPS
         points = state.material_points._replace(

@@ -44,8 +44,8 @@ NUMERICS = Numerics(tolerance=1e-9)
 ROUND_OFF = 1e-11
 """Relative residuals below this are round-off: the ground weighs much more than the pile pushes."""
 
-STEADY_FROM = 3
-"""Steps that are left out of the split: the soil is loaded up in them."""
+LOADED_UP = float(np.radians(3.0))
+"""Rotation that is left out of the split: the soil is loaded up in it."""
 
 Length = Annotated[float, Unit("m")]
 
@@ -71,8 +71,8 @@ def screw_pile_work(
     su: Annotated[float, Unit("Pa")] = 10e3,
     alpha: float = 0.5,
     AR: float = 1.0,
-    degrees_per_step: float = 1.0,
-    steps: int = 10,
+    degrees_per_step: float = 0.25,
+    steps: int = 40,
 ) -> Outcome:
     """Return the power balance of a helix of diameter D on a shaft of diameter d in clay."""
     problem, state = _problem((D, d, p, t), su, alpha, AR, np.radians(degrees_per_step))
@@ -86,7 +86,9 @@ def screw_pile_work(
         residuals.append(tuple(result.equilibrium.newton.residuals))
         state = accept(problem, state, result, target)
         if state.history.travel[-1] > end * (1.0 - 1e-9):
-            return _outcome(works[1:], splits[1:], residuals)  # the first step moves nothing
+            turned = np.abs(state.history.rotation[1:])  # the first step moves nothing
+            loading = min(int(np.sum(turned < LOADED_UP * (1.0 - 1e-9))) + 1, len(turned) - 1)
+            return _outcome(works[1:], splits[1:], residuals, loading)
         state, result, target = _advance(problem, state)
 
 
@@ -106,14 +108,17 @@ def _advance(
 
 
 def _outcome(
-    works: list[Work], splits: list[SoilWork], residuals: list[tuple[float, ...]]
+    works: list[Work],
+    splits: list[SoilWork],
+    residuals: list[tuple[float, ...]],
+    loading: int,
 ) -> Outcome:
-    """Return the checks and the curve of all steps."""
+    """Return the checks and the curve of all steps; the split is that after ``loading`` steps."""
     rig, interface, soil, weight = np.transpose(works)
     *parts, least = np.transpose(splits)
     dissipated = parts[1]
-    total = rig[STEADY_FROM:].sum()
-    shares = [part[STEADY_FROM:].sum() / total for part in (interface, *parts, -weight)]
+    total = rig[loading:].sum()
+    shares = [part[loading:].sum() / total for part in (interface, *parts, -weight)]
     error = np.abs((interface + soil - weight) / rig - 1.0).max()
     return Outcome(
         (
@@ -128,7 +133,7 @@ def _outcome(
                    tuple(np.arange(1.0, len(rig) + 1.0)), tuple(dissipated / rig)),
         ),
         (
-            f"shares of the work of the rig after step {STEADY_FROM}: {shares[0]:.1%} in the"
+            f"shares of the work of the rig after step {loading}: {shares[0]:.1%} in the"
             f" interface, {shares[2]:.1%} dissipated in the soil, {shares[1]:.1%} stored,"
             f" {shares[5]:.1%} against the weight; of the method {shares[3]:.1%} by the volumetric"
             f" term and {shares[4]:.1%} by the finite step",
