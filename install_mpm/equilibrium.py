@@ -160,9 +160,8 @@ class StepSystem:
         self.interface, self.is_prescribed = interface, prescribed.is_prescribed
         self.options = cell_options(fill, points, model)
         self.given, self.loaded = motion, loaded
-        self.solve: LinearSolve = (
-            model.solve if loaded is None else partial(solve_bordered, model.solve)
-        )
+        solve: LinearSolve = partial(model.solve, is_prescribed=self.is_prescribed.ravel())
+        self.solve = solve if loaded is None else partial(solve_bordered, solve)
         is_turning = bool(motion.rotation or (loaded is not None and loaded.rotation.any()))
         self.is_swept = model.elements.is_swept if is_turning else None
         self.trial = empty_trial(points)

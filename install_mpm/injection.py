@@ -49,9 +49,18 @@ def inject(
 
 def sub_region_of(points: MaterialPoints, cell: ReferenceCell) -> np.ndarray:
     """Return the integration point (n_points,) whose sub-region holds each material point."""
-    difference = points.reference_coordinates[:, None, :] - cell.integration_coordinates
-    distance = (difference**2).sum(axis=2) + difference.sum(axis=2) ** 2
-    nearest: np.ndarray = distance.argmin(axis=1)
+    coordinates = np.ascontiguousarray(points.reference_coordinates.T)
+    nearest, least = np.zeros(len(points.cell), dtype=np.int64), np.full(len(points.cell), np.inf)
+    for q, place in enumerate(cell.integration_coordinates):
+        distance, total = np.zeros_like(least), np.zeros_like(least)
+        for own, centre in zip(coordinates, place, strict=True):
+            difference = own - centre
+            distance += difference**2
+            total += difference
+        distance += total**2  # the dependent barycentric coordinate
+        is_nearer = distance < least
+        nearest[is_nearer] = q
+        np.minimum(least, distance, out=least)
     return nearest
 
 
@@ -80,44 +89,47 @@ def _split(
     """Return the points with one more per row (donor, cell, integration point) of ``split``."""
     if len(split) == 0:
         return points
-    volume, mass = points.volume.copy(), points.mass.copy()
-    added = {name: [] for name in MaterialPoints._fields}  # type: dict[str, list[np.ndarray]]
-    for donor, c, q in split:
-        volume[donor] /= 2.0
-        mass[donor] /= 2.0
-        xi = cell.integration_coordinates[q]
-        place = _position(mesh, cell, c, xi)
-        change = change_with_height(
-            gradient,
-            points.material[[donor]],
-            points.position[[donor], -1],
-            place[-1:],
-            cell.dim - 1,
-            points.state_variables.shape[1],
-        )
-        new = {name: getattr(points, name)[donor] for name in MaterialPoints._fields}
-        new |= {
-            "position": place,
-            "reference_coordinates": xi,
-            "cell": c,
-            "volume": volume[donor],
-            "mass": mass[donor],
-            "elastic_log_strain": new["elastic_log_strain"] + change.strain[0],
-            "kirchhoff_stress": new["kirchhoff_stress"] + change.stress[0],
-            "state_variables": new["state_variables"] + change.state_variables[0],
-        }
-        for name, value in new.items():
-            added[name].append(value)
-    kept = points._replace(volume=volume, mass=mass)
-    return MaterialPoints(
-        *(np.concatenate([getattr(kept, name), np.array(added[name])]) for name in added)
+    donor, c, q = split.T
+    halvings = _earlier_of_same(donor) + 1
+    n_split = np.bincount(donor, minlength=len(points.mass))
+    volume, mass = points.volume * 0.5**n_split, points.mass * 0.5**n_split
+    new = MaterialPoints(*(field[donor] for field in points))
+    reference = cell.integration_coordinates[q]
+    place = _position(mesh, cell, c, reference)
+    change = change_with_height(
+        gradient, new.material, new.position[:, -1], place[:, -1], cell.dim - 1,
+        points.state_variables.shape[1],
+    )  # fmt: skip
+    new = new._replace(
+        position=place,
+        reference_coordinates=reference,
+        cell=c,
+        volume=new.volume * 0.5**halvings,
+        mass=new.mass * 0.5**halvings,
+        elastic_log_strain=new.elastic_log_strain + change.strain,
+        kirchhoff_stress=new.kirchhoff_stress + change.stress,
+        state_variables=new.state_variables + change.state_variables,
     )
+    kept = points._replace(volume=volume, mass=mass)
+    return MaterialPoints(*(np.concatenate(pair) for pair in zip(kept, new, strict=True)))
 
 
-def _position(mesh: BackgroundMesh, cell: ReferenceCell, c: int, xi: np.ndarray) -> np.ndarray:
-    """Return the place of reference coordinates ``xi`` in the straight-edged cell ``c``."""
-    vertices = mesh.nodes[mesh.cell_nodes[c, : cell.n_vertices]]
-    place: np.ndarray = vertices[0] + xi @ (vertices[1:] - vertices[0])
+def _earlier_of_same(numbers: np.ndarray) -> np.ndarray:
+    """Return how many earlier entries of ``numbers`` (n,) equal each one, (n,)."""
+    order = np.argsort(numbers, kind="stable")
+    ordered = numbers[order]
+    earlier = np.empty(len(numbers), dtype=np.int64)
+    earlier[order] = np.arange(len(numbers)) - np.searchsorted(ordered, ordered)
+    return earlier
+
+
+def _position(
+    mesh: BackgroundMesh, cell: ReferenceCell, cells: np.ndarray, xi: np.ndarray
+) -> np.ndarray:
+    """Return the places (n, dim) of reference coordinates ``xi`` (n, dim) in ``cells`` (n,)."""
+    vertices = mesh.nodes[mesh.cell_nodes[cells, : cell.n_vertices]]
+    edges = vertices[:, 1:] - vertices[:, :1]
+    place: np.ndarray = vertices[:, 0] + np.einsum("nv,nvi->ni", xi, edges)
     return place
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from scipy import sparse
@@ -17,7 +17,22 @@ from scipy.sparse.linalg import splu
 
 from install_mpm.assembly import SparsityPattern, as_matrix
 
-Solve = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+class Solve(Protocol):
+    """Takes the values of a matrix and a right-hand side."""
+
+    def __call__(
+        self,
+        values: np.ndarray,
+        right_hand_side: np.ndarray,
+        is_prescribed: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Return the solution.
+
+        ``is_prescribed`` (n_dofs,) tells dofs whose rows and columns are those of the identity.
+        """
+        ...
+
 
 LinearSolve = Callable[[Any, np.ndarray], np.ndarray]
 """Takes a tangent, bordered or not, and a right-hand side."""
@@ -51,34 +66,34 @@ def coupled_system(pattern: SparsityPattern, is_coupled: np.ndarray) -> CoupledS
 
 
 def mumps(pattern: SparsityPattern) -> Solve:
-    """Return a MUMPS LU solver (through PETSc) of the dofs that are coupled to others.
+    """Return a MUMPS LU solver (through PETSc) of the dofs that are not prescribed.
 
-    Supports and cells without soil leave identity rows, a fifth of all around a screw pile, which
-    are not factorised.  The others are analysed again only when they change, so a solution depends
-    on its own values, not on those of earlier calls.
+    The others are analysed once, as they stay the same in a run, and so is the order in which they
+    are eliminated.  Dofs without soil are among them: they come and go at the ground surface in
+    most steps, and what they add to a factorisation is little beside another analysis.  A solution
+    depends on its own values, not on those of earlier calls.
 
     Raises
     ------
     SingularMatrixError
         From the returned function, if a factorisation fails.
     """
-    row = np.repeat(np.arange(len(pattern.indptr) - 1), np.diff(pattern.indptr))
-    is_diagonal = row == pattern.indices
-    last: tuple[np.ndarray, CoupledSystem, Solve, Callable[[], None]] | None = None
+    last: tuple[np.ndarray, CoupledSystem, LinearSolve, Callable[[], None]] | None = None
 
-    def solve(values: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
+    def solve(
+        values: np.ndarray, right_hand_side: np.ndarray, is_prescribed: np.ndarray | None = None
+    ) -> np.ndarray:
         nonlocal last
-        links = ~is_diagonal & (values != 0.0)
-        is_coupled = np.zeros(len(right_hand_side), dtype=bool)
-        is_coupled[row[links]] = True
-        is_coupled[pattern.indices[links]] = True
+        is_coupled = np.ones(len(right_hand_side), dtype=bool)
+        if is_prescribed is not None:
+            is_coupled = ~is_prescribed
         if last is None or not np.array_equal(is_coupled, last[0]):
             if last is not None:
                 last[-1]()
             system = coupled_system(pattern, is_coupled)
             last = is_coupled, system, *_mumps_of_all(system.indptr, system.indices)
         _, system, solve_coupled, _ = last
-        result = _each_alone(values[is_diagonal], right_hand_side, is_coupled)
+        result = np.array(right_hand_side)  # of rows of the identity
         if len(system.dofs):
             result[system.dofs] = solve_coupled(
                 values[system.entries], right_hand_side[system.dofs]
@@ -88,20 +103,9 @@ def mumps(pattern: SparsityPattern) -> Solve:
     return solve
 
 
-def _each_alone(
-    diagonal: np.ndarray, right_hand_side: np.ndarray, is_coupled: np.ndarray
-) -> np.ndarray:
-    """Return the solution of dofs that are coupled to no other, zero elsewhere."""
-    is_alone = ~is_coupled
-    stiffness = diagonal[is_alone]
-    if not np.isfinite(stiffness).all() or (stiffness == 0.0).any():
-        raise SingularMatrixError("a dof without stiffness")
-    solution = np.zeros_like(right_hand_side)
-    solution[is_alone] = (right_hand_side[is_alone].T / stiffness).T
-    return solution
-
-
-def _mumps_of_all(indptr: np.ndarray, indices: np.ndarray) -> tuple[Solve, Callable[[], None]]:
+def _mumps_of_all(
+    indptr: np.ndarray, indices: np.ndarray
+) -> tuple[LinearSolve, Callable[[], None]]:
     """Return a MUMPS solver of a matrix in compressed rows, which analyses it once.
 
     The second function gives its memory back: PETSc keeps what Python has forgotten.
@@ -169,13 +173,17 @@ def _prepare_mumps(factorisation: Any) -> None:
 def superlu(pattern: SparsityPattern) -> Solve:
     """Return scipy's SuperLU solver, for machines without PETSc; slow in three dimensions.
 
+    Rows of the identity cost it nothing, so it leaves none out.
+
     Raises
     ------
     SingularMatrixError
         From the returned function, if the matrix is exactly singular.
     """
 
-    def solve(values: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
+    def solve(
+        values: np.ndarray, right_hand_side: np.ndarray, is_prescribed: np.ndarray | None = None
+    ) -> np.ndarray:
         try:
             factors = splu(sparse.csc_matrix(as_matrix(pattern, values)))
         except RuntimeError as error:
@@ -203,7 +211,7 @@ class BorderedTangent(NamedTuple):
 
 
 def solve_bordered(
-    solve: Solve, tangent: BorderedTangent, right_hand_side: np.ndarray
+    solve: LinearSolve, tangent: BorderedTangent, right_hand_side: np.ndarray
 ) -> np.ndarray:
     """Return the solution (n_dofs + m,) of a bordered system: one factorisation, 1 + m solutions.
 

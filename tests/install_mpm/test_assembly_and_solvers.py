@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from install_mpm import linear_solvers
 from install_mpm.assembly import as_matrix, sparsity_pattern
 from install_mpm.kernels.scatter import constrain, scatter_force, scatter_stiffness
 from install_mpm.linear_solvers import SOLVERS, SingularMatrixError, coupled_system
@@ -120,18 +121,51 @@ def test_solver_is_used_again_with_other_values(solver, system, pattern, rng):
     np.testing.assert_array_equal(solve(values, load), kept)
 
 
-def test_only_coupled_dofs_are_factorised_and_they_may_change(pattern, blocks, rng):
-    """Cells come and go: the answer is that of the dense matrix, and that of a new solver."""
-    solve, load = SOLVERS["mumps"](pattern), rng.normal(size=N_DOFS)
+def without(dofs, pattern, blocks):
+    """Values of a matrix in which ``dofs`` have rows and columns of the identity."""
+    values = assembled(pattern, blocks)
+    is_free = np.ones(N_DOFS, dtype=bool)
+    is_free[dofs] = False
+    constrain(pattern.indptr, pattern.indices, is_free, values)
+    return values, ~is_free
+
+
+@every_solver
+def test_prescribed_dofs_are_left_out_and_may_change(solver, pattern, blocks, rng):
+    """The answer is that of the dense matrix, and that of a new solver."""
+    solve, load = SOLVERS[solver](pattern), rng.normal(size=N_DOFS)
     for held in ([0, 5], [0, 5, 9, 10], range(N_DOFS), [2]):
-        values = assembled(pattern, blocks)
-        is_free = np.ones(N_DOFS, dtype=bool)
-        is_free[[*held, 16, 17]] = False
-        constrain(pattern.indptr, pattern.indices, is_free, values)
-        result = solve(values, load)
+        values, is_prescribed = without([*held, 16, 17], pattern, blocks)
+        result = solve(values, load, is_prescribed)
         expected = np.linalg.solve(as_matrix(pattern, values).toarray(), load)
         np.testing.assert_allclose(result, expected, rtol=1e-9, atol=1e-10)
-        np.testing.assert_array_equal(result, SOLVERS["mumps"](pattern)(values, load))
+        again = SOLVERS[solver](pattern)(values, load, is_prescribed)
+        np.testing.assert_array_equal(result, again)
+
+
+def test_cells_come_and_go_without_another_analysis(pattern, blocks, rng, monkeypatch):
+    """Each answer is that of the dense matrix, and that of a new solver, as in a resumed run."""
+    analysed = []
+    analyse = linear_solvers._mumps_of_all
+    monkeypatch.setattr(
+        linear_solvers,
+        "_mumps_of_all",
+        lambda indptr, indices: analysed.append(len(indptr) - 1) or analyse(indptr, indices),
+    )
+    solve, load = SOLVERS["mumps"](pattern), rng.normal(size=N_DOFS)
+    _, is_prescribed = without([0, 5], pattern, blocks)
+    results = []
+    systems = [
+        without([0, 5, 16, 17, *empty], pattern, blocks)[0] for empty in ([], [8, 9], [2], [])
+    ]
+    for values in systems:
+        results.append(solve(values, load, is_prescribed))
+        expected = np.linalg.solve(as_matrix(pattern, values).toarray(), load)
+        np.testing.assert_allclose(results[-1], expected, rtol=1e-9, atol=1e-10)
+    assert analysed == [N_DOFS - 2]
+    for values, result in zip(systems, results, strict=True):
+        again = SOLVERS["mumps"](pattern)(values, load, is_prescribed)
+        np.testing.assert_array_equal(again, result)
 
 
 def test_coupled_system_is_the_matrix_of_its_dofs(pattern, blocks, rng):

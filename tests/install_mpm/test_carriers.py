@@ -1,8 +1,11 @@
 """Material points as carriers: filling of cells, state at the integration points, injection."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from install_mpm import injection
 from install_mpm.carriers import integration_points
 from install_mpm.cell_fill import cell_geometry, fill_cells
 from install_mpm.cells import CellType, reference_cell, sub_region_points
@@ -11,7 +14,7 @@ from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.geostatic import elastic_strain_of, geostatic_gradient
 from install_mpm.ground import geostatic_stress
 from install_mpm.injection import inject, merge
-from install_mpm.kernels.carry import body_force
+from install_mpm.kernels.carry import body_force, nearest_integration_point
 from install_mpm.material_points import MaterialPoints
 from install_mpm.seeding import seed_points
 
@@ -330,6 +333,37 @@ def test_stress_of_an_injected_point_belongs_to_its_strain(mesh, clay_ground, wi
     np.testing.assert_allclose(
         enriched.elastic_log_strain, expected, atol=1e-13 * np.abs(expected).max()
     )
+
+
+def test_a_point_that_is_split_again_is_halved_again(mesh, clay_ground, rng):
+    """The one point of a cell with three sub-regions gives a quarter and another quarter."""
+    points = scattered(mesh, clay_ground, rng)
+    centre = mesh.nodes[mesh.cell_nodes[:, :3]].mean(axis=1)
+    inner = np.linalg.norm(centre - [1.0, -1.5], axis=1).argmin()
+    own = np.flatnonzero(points.cell == inner)
+    is_left = np.ones(len(points.mass), dtype=bool)
+    is_left[own[1:]] = False
+    points = kept(points, is_left)
+    enriched = injected(points, mesh, clay_ground)
+    here = points.cell == inner
+    for name in ("volume", "mass"):
+        whole = getattr(points, name)[here][0]
+        parts = getattr(enriched, name)[enriched.cell == inner]
+        np.testing.assert_array_equal(parts, whole * np.array([0.25, 0.5, 0.25]))
+        others = getattr(enriched, name)[enriched.cell != inner]
+        np.testing.assert_array_equal(others, getattr(points, name)[~here])
+
+
+@pytest.mark.parametrize("cell_type", [CellType.TRI6, CellType.TET10])
+def test_sub_region_is_the_one_that_the_kernel_finds(cell_type, rng):
+    """Also where two are equally near: in the middle of edges and of the cell."""
+    cell = reference_cell(cell_type)
+    shares = rng.dirichlet(np.ones(cell.dim + 1), size=200)
+    shares[:50] = rng.integers(1, 3, size=(50, cell.dim + 1))
+    coordinates = (shares / shares.sum(axis=1, keepdims=True))[:, 1:]
+    points = SimpleNamespace(reference_coordinates=coordinates, cell=np.zeros(200, dtype=np.int64))
+    expected = [nearest_integration_point(xi, cell.integration_coordinates) for xi in coordinates]
+    np.testing.assert_array_equal(injection.sub_region_of(points, cell), expected)
 
 
 def test_injection_leaves_complete_cells_alone(mesh, clay_ground, rng):
