@@ -43,11 +43,14 @@ def test_a_result_is_not_computed_again_and_must_belong_to_the_study(tmp_path):
 def test_the_table_says_how_far_a_run_is_from_the_reference():
     reference = {
         "torque": 8e3, "normal_torque": 3e3, "crowd_force": 10e3, "cells": 2000,
-        "iterations": 3.0, "share_cut": 0.0,
+        "iterations": 3.0, "share_cut": 0.0, "deviations": {"rim": 0.01, "shaft": -0.02},
     }  # fmt: skip
     other = reference | {"torque": 7e3, "crowd_force": 11e3, "share_cut": 0.25}
     lines = study.table([("mesh", "coarse", reference), ("step", "11 mm", other)]).splitlines()
-    assert lines[2] == "| mesh | coarse | 2,000 | 8.00 |  | 3.00 | 10.00 |  | 3.0 | 0 % |"
+    assert (
+        lines[2]
+        == "| mesh | coarse | 2,000 | 8.00 |  | 3.00 | 10.00 |  | shaft -2.0 % | 3.0 | 0 % |"
+    )
     assert lines[3] == (
-        "| step | 11 mm | 2,000 | 7.00 | -12.5 % | 3.00 | 11.00 | +10.0 % | 3.0 | 25 % |"
+        "| step | 11 mm | 2,000 | 7.00 | -12.5 % | 3.00 | 11.00 | +10.0 % | shaft -2.0 % | 3.0 | 25 % |"
     )
