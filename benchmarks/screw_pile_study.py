@@ -111,9 +111,7 @@ def figures_of(pile, state):
     history = state.history
     parts = part_torques(pile, state, None)
     return {
-        "deviations": {
-            part.name: part.deviation for part in parts if part.closed_form is not None
-        },
+        "deviations": {part.name: part.deviation for part in parts if part.closed_form is not None},
         "degrees": abs(float(np.degrees(history.rotation[-1]))),
         "torque": float(history.torque[-1]),
         "normal_torque": float(history.part_normal_torque[-1].sum()),
