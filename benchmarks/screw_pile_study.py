@@ -140,7 +140,8 @@ def table(rows):
             f"| {group} | {value} | {result['cells']:,} | {result['torque'] / 1e3:.2f} "
             f"| {_change(result, reference, 'torque')} | {result['normal_torque'] / 1e3:.2f} "
             f"| {result['crowd_force'] / 1e3:.2f} | {_change(result, reference, 'crowd_force')} "
-            f"| {_farthest(result['deviations'])} | {result['iterations']:.1f} | {100 * result['share_cut']:.0f} % |"
+            f"| {_farthest(result['deviations'])} | {result['iterations']:.1f} "
+            f"| {100 * result['share_cut']:.0f} % |"
         )
     return "\n".join(lines) + "\n"
 
