@@ -5,6 +5,8 @@ Conserves mass and volume.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from install_mpm.background_mesh import BackgroundMesh
@@ -166,23 +168,28 @@ def _nearest_pairs(
 
     Both points of a pair are of the same soil and sub-region.
     """
-    first, second = np.triu_indices(len(own), 1)
-    first, second = own[first], own[second]
-    is_same = (points.material[first] == points.material[second]) & (
-        region[first] == region[second]
-    )
+    first, second = _all_pairs(len(own))
+    material, own_region, position = points.material[own], region[own], points.position[own]
+    is_same = (own_region[first] == own_region[second]) & (material[first] == material[second])
     first, second = first[is_same], second[is_same]
-    difference = points.position[first] - points.position[second]
+    difference = position[first] - position[second]
     order = np.argsort((difference**2).sum(axis=1), kind="stable")
+    first, second = own[first[order]], own[second[order]]
     taken: set[int] = set()
     pairs: list[tuple[int, int]] = []
-    for pair in zip(first[order].tolist(), second[order].tolist(), strict=True):
+    for pair in zip(first.tolist(), second.tolist(), strict=True):
         if len(pairs) == most:
             break
         if taken.isdisjoint(pair):
             taken.update(pair)
             pairs.append(pair)
     return np.array(pairs, dtype=np.int64).reshape(-1, 2)
+
+
+@lru_cache(maxsize=64)
+def _all_pairs(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return first and second number of all pairs of ``n`` things; most cells hold equally many."""
+    return np.triu_indices(n, 1)
 
 
 def _merge_pairs(points: MaterialPoints, kept: np.ndarray, gone: np.ndarray) -> None:
