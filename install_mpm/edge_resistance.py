@@ -1,10 +1,11 @@
 """What edges and rim of a plate resist that the mesh holds as a surface: stated by hand.
 
-The mesh of such a plate has its two faces only.  Leading and trailing edge cut through the soil with
-the bearing resistance N su on their thickness, against the way that each place of them goes; on the
-rim the shear limit of the interface acts along the slip.  Soil parts to both sides of an edge, so
-that adhesion on it has no resultant.  The bearing factor N is that of ``Helix.edge_bearing``: in
-the clay of the prototype study it was 6 to 8 for each edge of a plate of one turn.
+The mesh of such a plate has its two faces only.  Leading and trailing edge cut through the soil
+with the bearing resistance N su on their thickness, against the way that each place of them goes;
+on the rim the shear limit of the interface acts along the slip.  Soil parts to both sides of an
+edge, so that adhesion on it has no resultant.  The bearing factor N is that of
+``Helix.edge_bearing``: in the clay of the prototype study, which carried the solid plate to its
+limit of fine meshes and small steps, it was 6 to 8 for each edge of a plate of one turn.
 
 These are limits, of a pile that moves.  They stand beside torque and crowd force, never in them.
 """
@@ -81,7 +82,7 @@ def _of_rim(
     """Return torque and force (2,) of the rim."""
     windings = helix.winding * (np.arange(PLACES) + 0.5) / PLACES
     strength = _strength(pile, helix, ground, advance, windings)
-    limit = coulomb_interface.pack(law, strength)[:, COHESION] + 0.0 * strength
+    limit = coulomb_interface.pack(law, strength)[:, COHESION]
     load = limit * helix.thickness * helix.radius * helix.winding / PLACES
     return _against(motion, np.full(PLACES, helix.radius), load)
 
