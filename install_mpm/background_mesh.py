@@ -27,7 +27,7 @@ class BackgroundMesh(NamedTuple):
         Field(
             ("cell", "facet"),
             "",
-            "cell across the facet opposite each vertex, -1 outside; across a cut -2 less it",
+            "cell across the facet opposite each vertex, -1 outside, -2 - cell across a cut",
             "int64",
         ),
     ]

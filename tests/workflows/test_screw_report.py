@@ -135,6 +135,7 @@ def row_of(case, number, travel, pose):
         "projected_points": 0, "smallest_cell_quality": 0.05,
         "smallest_volume_ratio": 0.99, "largest_volume_ratio": 1.01,
         "advancement_ratio": 0.875 if number else np.nan,
+        "edge_torque": np.nan, "edge_force": np.nan,
         "mass_error": 1e-16, "volume_error": 2e-15, "pressure_scatter": 3e3 + number,
         "winding_stress_change": 0.02 if number == 2 else np.nan,
         "winding_force_change": -250.0 if number == 2 else np.nan,
