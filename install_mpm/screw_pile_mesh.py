@@ -103,7 +103,7 @@ def _draw(pile: ScrewPile, width: float, levels: Sequence[float], wall_angle: fl
     if sheets:
         sheets, _ = occ.cut(sheets, body, removeTool=False)
     remaining, _ = occ.cut(prisms, body)
-    pieces = []
+    pieces: list[list[tuple[int, int]]] = []
     if len(remaining) + len(sheets) > 1:
         _, pieces = occ.fragment(remaining[:1], remaining[1:] + sheets)
     occ.synchronize()

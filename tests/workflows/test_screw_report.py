@@ -400,6 +400,16 @@ def test_the_nearer_triangle_hides_the_other():
     assert not edges[40, 40]
 
 
+@pytest.mark.parametrize("seen", [0, 1])
+def test_of_both_sides_of_a_surface_the_one_towards_the_viewer_is_drawn(seen):
+    """Corners of facets go round clockwise from outside the pile."""
+    view = view_from(0.3, 0.5)
+    clockwise = np.array([-view.right, view.up, view.right])
+    sides = np.stack([clockwise, clockwise[::-1]])[[seen, 1 - seen]]
+    raster = rasterise(sides, view, Frame(-1.0, 1.0, -1.0, 1.0), 40)
+    assert set(np.unique(raster.triangle)) == {-1, seen}
+
+
 def test_check_draws_the_mesh(case, tmp_path):
     path = tmp_path / "case.toml"
     path.write_text(case_text(case))
