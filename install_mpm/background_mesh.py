@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Annotated, NamedTuple
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from install_mpm.cells import TET_EDGES, TRIANGLE_EDGES
 from install_mpm.record import Field
@@ -23,7 +25,10 @@ class BackgroundMesh(NamedTuple):
     cell_neighbours: Annotated[
         np.ndarray,
         Field(
-            ("cell", "facet"), "", "cell across the facet opposite each vertex, -1 outside", "int64"
+            ("cell", "facet"),
+            "",
+            "cell across the facet opposite each vertex, -1 outside, -2 - cell across a cut",
+            "int64",
         ),
     ]
 
@@ -104,6 +109,35 @@ def _neighbours(vertices: np.ndarray) -> np.ndarray:
     neighbours = np.full(n_vertices * n_cells, -1, dtype=np.int64)
     neighbours[first], neighbours[second] = second // n_vertices, first // n_vertices
     return neighbours.reshape(n_cells, n_vertices)
+
+
+def cut_along(mesh: BackgroundMesh, is_cut: np.ndarray) -> BackgroundMesh:
+    """Return the mesh cut open along inner facets: each side has its own nodes, at the same place.
+
+    ``is_cut`` (n_cells, n_vertices) tells the facets, from both of their cells.  A node goes into
+    as many as there are groups of cells around it that hang together across other facets; so the
+    free boundary of the cut keeps its nodes.
+    """
+    n_local = mesh.cell_nodes.shape[1]
+    cell, facet = np.nonzero((mesh.cell_neighbours >= 0) & ~is_cut)
+    beside = mesh.cell_neighbours[cell, facet]
+    is_same = mesh.cell_nodes[cell][:, :, None] == mesh.cell_nodes[beside][:, None, :]
+    pair, own, other = np.nonzero(is_same)
+    links = (cell[pair] * n_local + own, beside[pair] * n_local + other)
+    size = mesh.cell_nodes.size
+    graph = coo_array((np.ones(len(pair), dtype=bool), links), shape=(size, size))
+    _, group = connected_components(graph, directed=False)
+    _, first, cell_nodes = np.unique(
+        np.column_stack([mesh.cell_nodes.ravel(), group]), axis=0, return_index=True,
+        return_inverse=True,
+    )  # fmt: skip
+    origin = mesh.cell_nodes.ravel()[first]
+    return BackgroundMesh(
+        nodes=mesh.nodes[origin],
+        reference_nodes=mesh.reference_nodes[origin],
+        cell_nodes=cell_nodes.reshape(mesh.cell_nodes.shape),
+        cell_neighbours=np.where(is_cut, -2 - mesh.cell_neighbours, mesh.cell_neighbours),
+    )
 
 
 def straightened(mesh: BackgroundMesh) -> BackgroundMesh:

@@ -116,6 +116,14 @@ class ScrewHistory(NamedTuple):
         np.ndarray, _added("", "relative change of the mass of all points by merging and splitting")
     ]
     volume_error: Annotated[np.ndarray, _added("", "the same of their volume; NaN: not recorded")]
+    edge_torque: Annotated[
+        np.ndarray,
+        _added("N m", "by hand, of edges and rim of plates that the mesh holds as surfaces; not in "
+                      "the torque; NaN: not stated"),
+    ]  # fmt: skip
+    edge_force: Annotated[
+        np.ndarray, _added("N", "the same of the crowd force, positive against driving it down")
+    ]
     pressure_scatter: Annotated[
         np.ndarray,
         _added("Pa", "mean pressure of points about that of their cell, root mean square within a "

@@ -39,6 +39,24 @@ class Helix:
     edges: Literal["blunt", "rounded"] = "blunt"
     """Rounded: leading and trailing edge end in half a circle as wide as the plate is thick there.
     """
+    plate: Literal["solid", "surface"] = "solid"
+    """Surface: the mesh holds the plate without its thickness, and what soil resists at its edges
+    and rim is stated by hand beside the torque.
+    """
+    edge_bearing: Annotated[float, Ge(0), Le(20)] = 7.0
+    """Of a plate held as a surface: resistance of leading and trailing edge over su, thickness and
+    length of the edge; the edges of thick plates had 6 to 8.
+    """
+
+    @property
+    def is_surface(self) -> bool:
+        """Whether the mesh holds the plate without its thickness."""
+        return self.plate == "surface"
+
+    @property
+    def meshed_thickness(self) -> float:
+        """Thickness in m that the mesh leaves out: none of a plate held as a surface."""
+        return 0.0 if self.is_surface else self.thickness
 
     @property
     def winding(self) -> float:
@@ -136,9 +154,9 @@ def winding_angle(pile: ScrewPile, helix: Helix, points: np.ndarray) -> np.ndarr
 
 
 def thickness_at(helix: Helix, winding: np.ndarray) -> np.ndarray:
-    """Return the plate thickness (n,) in m at winding angles (n,)."""
+    """Return the thickness (n,) in m that the mesh leaves out at winding angles (n,)."""
     if helix.edge_thickness is None:
-        return np.full_like(winding, helix.thickness)
+        return np.full_like(winding, helix.meshed_thickness)
     to_edge = np.minimum(winding, helix.winding - winding)
     share = np.clip(to_edge / helix.taper_angle, 0.0, 1.0)
     thickness: np.ndarray = helix.edge_thickness + share * (helix.thickness - helix.edge_thickness)
@@ -146,5 +164,5 @@ def thickness_at(helix: Helix, winding: np.ndarray) -> np.ndarray:
 
 
 def edge_thickness(helix: Helix) -> float:
-    """Return the thickness in m of the plate at its edges."""
-    return helix.thickness if helix.edge_thickness is None else helix.edge_thickness
+    """Return the thickness in m that the mesh leaves out at the edges of the plate."""
+    return helix.meshed_thickness if helix.edge_thickness is None else helix.edge_thickness

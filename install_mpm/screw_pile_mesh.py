@@ -12,7 +12,12 @@ from itertools import pairwise
 import gmsh
 import numpy as np
 
-from install_mpm.background_mesh import BackgroundMesh, make_background_mesh
+from install_mpm.background_mesh import (
+    BackgroundMesh,
+    cut_along,
+    facets_opposite_vertices,
+    make_background_mesh,
+)
 from install_mpm.options import Box, ScrewMeshOptions
 from install_mpm.screw_pile import Helix, ScrewPile, edge_thickness, thickness_at
 
@@ -37,7 +42,11 @@ GROWTH_ABOVE_GROUND = 1.0
 OPTIMISERS = ("", "Netgen")
 """Of gmsh, in order; the second removes the flat cells that the first leaves at the plates."""
 
-GMSH_TETRAHEDRON_10 = 11
+OPTIMISED_BELOW = 0.6
+"""Quality of gmsh below which a cell is optimised beside a plate that is held as a surface, where
+Netgen cannot help: it does not take surfaces inside a volume."""
+
+GMSH_TRIANGLE_6, GMSH_TETRAHEDRON_10 = 9, 11
 
 
 def generate_screw_mesh(pile: ScrewPile, box: Box, options: ScrewMeshOptions) -> BackgroundMesh:
@@ -58,6 +67,8 @@ def mesh_around_pile(
 ) -> BackgroundMesh:
     """Return a mesh of 10-node tetrahedra conforming to the pile and to all ``levels``.
 
+    Along plates that are held as surfaces it is cut open.
+
     The levels in m, from the bottom to the top, are horizontal planes; the first and the last bound
     the mesh.  The corners of the outer wall are turned by ``wall_angle`` in rad.
     """
@@ -67,26 +78,36 @@ def mesh_around_pile(
         gmsh.option.setNumber("General.NumThreads", 1)  # more threads: another mesh in every run
         gmsh.option.setNumber("Mesh.RandomSeed", options.random_seed + 1)
         gmsh.model.add("background")
-        _draw(pile, box.width, levels, wall_angle)
+        sheets = _draw(pile, box.width, levels, wall_angle)
         _set_sizes(pile, box, options)
         gmsh.model.mesh.generate(3)
-        for optimiser in OPTIMISERS:
+        if sheets:
+            gmsh.option.setNumber("Mesh.OptimizeThreshold", OPTIMISED_BELOW)
+        for optimiser in OPTIMISERS[:1] if sheets else OPTIMISERS:
             gmsh.model.mesh.optimize(optimiser)
         gmsh.model.mesh.setOrder(2)
-        return _collect()
+        return _collect(sheets)
     finally:
         gmsh.finalize()
 
 
-def _draw(pile: ScrewPile, width: float, levels: Sequence[float], wall_angle: float) -> None:
-    """Draw the volumes between the levels, which share their horizontal faces, less the pile."""
+def _draw(pile: ScrewPile, width: float, levels: Sequence[float], wall_angle: float) -> list[int]:
+    """Draw the volumes between the levels, which share their horizontal faces, less the pile.
+
+    Return the surfaces in them that are plates.
+    """
     occ = gmsh.model.occ
     prisms = [(3, _prism(width, *ends, wall_angle)) for ends in pairwise(levels)]
     body = _draw_pile(pile, top=levels[-1] + pile.shaft_radius)
+    sheets = [_draw_sheet(pile, helix) for helix in pile.helices if helix.is_surface]
+    if sheets:
+        sheets, _ = occ.cut(sheets, body, removeTool=False)
     remaining, _ = occ.cut(prisms, body)
-    if len(remaining) > 1:
-        occ.fragment(remaining[:1], remaining[1:])
+    pieces: list[list[tuple[int, int]]] = []
+    if len(remaining) + len(sheets) > 1:
+        _, pieces = occ.fragment(remaining[:1], remaining[1:] + sheets)
     occ.synchronize()
+    return [tag for piece in pieces[len(remaining) :] for _, tag in piece]
 
 
 def _prism(radius: float, bottom: float, top: float, wall_angle: float) -> int:
@@ -101,18 +122,41 @@ def _prism(radius: float, bottom: float, top: float, wall_angle: float) -> int:
 
 
 def _draw_pile(pile: ScrewPile, top: float) -> list[tuple[int, int]]:
-    """Return the volume of shaft, tip and plates, from the tip up to the level ``top`` in m."""
+    """Return the volume of shaft, tip and solid plates, from the tip up to the level ``top``."""
     occ = gmsh.model.occ
     tip, a = -pile.embedment, pile.shaft_radius
     bottom = tip + pile.tip_length
     shaft = [(3, occ.addCylinder(0.0, 0.0, bottom, 0.0, 0.0, top - bottom, a))]
-    tools = [piece for helix in pile.helices for piece in _draw_plate(pile, helix)]
+    tools = [piece for helix in pile.helices if not helix.is_surface
+             for piece in _draw_plate(pile, helix)]  # fmt: skip
     if pile.tip_length > 0.0:
         tools.append((3, occ.addCone(0.0, 0.0, tip, 0.0, 0.0, pile.tip_length, 0.0, a)))
     if not tools:
         return shaft
     body, _ = occ.fuse(shaft, tools)
     return list(body)
+
+
+def _draw_sheet(pile: ScrewPile, helix: Helix) -> tuple[int, int]:
+    """Return the middle surface of a plate, lofted through radial lines."""
+    occ = gmsh.model.occ
+    wires = []
+    for winding in _section_windings(0.0, helix.winding):
+        polar = pile.sense * winding
+        level = pile.leading_level(helix) + helix.pitch * winding / (2.0 * np.pi)
+        ends = [
+            occ.addPoint(r * np.cos(polar), r * np.sin(polar), level)
+            for r in (INSIDE_SHARE * pile.shaft_radius, helix.radius)
+        ]
+        wires.append(occ.addWire([occ.addLine(*ends)]))
+    surfaces = occ.addThruSections(wires, makeSolid=False, makeRuled=False)
+    return next((dim, tag) for dim, tag in surfaces if dim == 2)
+
+
+def _section_windings(start: float, end: float) -> np.ndarray:
+    """Return the winding angles (n,) of the sections between two."""
+    n_sections = int(np.ceil(SECTIONS_PER_TURN * (end - start) / (2.0 * np.pi))) + 1
+    return np.linspace(start, end, max(n_sections, LEAST_SECTIONS))
 
 
 def _draw_plate(pile: ScrewPile, helix: Helix) -> list[tuple[int, int]]:
@@ -133,8 +177,7 @@ def _draw_plate(pile: ScrewPile, helix: Helix) -> list[tuple[int, int]]:
 def _draw_piece(pile: ScrewPile, helix: Helix, start: float, end: float) -> tuple[int, int]:
     """Return the volume of a plate between two winding angles, lofted through radial rectangles."""
     occ = gmsh.model.occ
-    n_sections = int(np.ceil(SECTIONS_PER_TURN * (end - start) / (2.0 * np.pi))) + 1
-    windings = np.linspace(start, end, max(n_sections, LEAST_SECTIONS))
+    windings = _section_windings(start, end)
     wires = []
     for winding, thickness in zip(windings, thickness_at(helix, windings), strict=True):
         level = pile.leading_level(helix) + helix.pitch * winding / (2.0 * np.pi)
@@ -232,12 +275,26 @@ def cell_size(pile: ScrewPile, options: ScrewMeshOptions) -> Callable[[float, fl
     return size_at
 
 
-def _collect() -> BackgroundMesh:
-    """Return the mesh that gmsh holds, with nodes numbered as used."""
+def _collect(sheets: Sequence[int]) -> BackgroundMesh:
+    """Return the mesh that gmsh holds, with nodes numbered as used, cut along ``sheets``."""
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     _, cells = gmsh.model.mesh.getElementsByType(GMSH_TETRAHEDRON_10)
     used, cell_nodes = np.unique(cells, return_inverse=True)
     position = np.empty(int(tags.max()) + 1, dtype=np.int64)
     position[tags] = np.arange(len(tags))
     nodes = coordinates.reshape(-1, 3)[position[used]]
-    return make_background_mesh(nodes, cell_nodes.reshape(-1, 10))
+    mesh = make_background_mesh(nodes, cell_nodes.reshape(-1, 10))
+    if not sheets:
+        return mesh
+    triangles = [gmsh.model.mesh.getElementsByType(GMSH_TRIANGLE_6, tag)[1] for tag in sheets]
+    corners = np.concatenate(triangles).reshape(-1, 6)[:, :3]
+    return cut_along(mesh, _facets_between(mesh, np.searchsorted(used, corners)))
+
+
+def _facets_between(mesh: BackgroundMesh, corners: np.ndarray) -> np.ndarray:
+    """Return which facets of the cells are those with ``corners`` (n, 3), (n_cells, 4) bool."""
+    facets = facets_opposite_vertices(mesh.cell_nodes[:, :4]).reshape(-1, 3)
+    _, facet = np.unique(
+        np.sort(np.concatenate([corners, facets]), axis=1), axis=0, return_inverse=True
+    )
+    return np.isin(facet[len(corners) :], facet[: len(corners)]).reshape(-1, 4)

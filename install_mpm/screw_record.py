@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from install_mpm.background_mesh import cell_quality
+from install_mpm.edge_resistance import NOT_STATED, edge_resistance
 from install_mpm.equilibrium import StepEquilibrium
 from install_mpm.far_field import far_field_mismatch
 from install_mpm.newton import convergence_order
@@ -59,6 +60,7 @@ def history_row(
         pose.advance - float(state.pile.penetration), pose.rotation - float(state.pile.rotation)
     )
     is_release = target.phase == len(problem.programme.phases)
+    edges = edge_resistance(problem.pile, problem.ground, problem.law, pose.advance, moved)
     return {
         "travel": float(state.history.travel[-1:].sum()) + rim_travel(problem.pile, moved),
         "penetration": pose.advance,
@@ -69,6 +71,7 @@ def history_row(
         "phase_share": target.share,
         **_resultants(problem, equilibrium, pose),
         **_far_field(state, equilibrium),
+        **(NOT_STATED if is_release else edges)._asdict(),
         "rig_work": work.rig,
         "interface_work": work.interface,
         "soil_work": work.soil,
@@ -141,7 +144,7 @@ def weight_of(pile: ScrewPile, tip_depth: float) -> float:
 
 
 def plate_volume(pile: ScrewPile, helix: Helix) -> float:
-    """Return the volume in m^3 of a plate outside the shaft.
+    """Return the volume in m^3 that the mesh leaves out for a plate outside the shaft.
 
     That of rounded edges is a series in their thickness, short of terms of fourth order.
     """
@@ -154,4 +157,4 @@ def plate_volume(pile: ScrewPile, helix: Helix) -> float:
         half, product = edge_thickness(helix) / 2.0, pile.shaft_radius * helix.radius
         width = helix.radius - pile.shaft_radius  # between the cylinders of shaft and rim
         noses = np.pi * half**2 * width * (1.0 + half**2 / (8.0 * product))
-    return float(annulus * (helix.thickness * helix.winding - thinned) + noses)
+    return float(annulus * (helix.meshed_thickness * helix.winding - thinned) + noses)

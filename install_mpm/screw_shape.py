@@ -155,20 +155,25 @@ def _distance_to_cone(pile: ScrewPile, radius: np.ndarray, above_tip: np.ndarray
 def _distance_to_helix(
     pile: ScrewPile, helix: Helix, points: np.ndarray, radius: np.ndarray
 ) -> list[np.ndarray]:
-    """Return the distances (n,) in m from lower and upper face, rim, leading and trailing edge."""
+    """Return the distances (n,) in m from lower and upper face, rim, leading and trailing edge.
+
+    Of a plate held as a surface there are only the faces, at the same place.
+    """
     winding = winding_angle(pile, helix, points)
     middle = pile.leading_level(helix) + helix.pitch * winding / (2.0 * np.pi)
     half = thickness_at(helix, winding) / 2.0
     rise = points[:, 2] - middle
     beyond = np.maximum(np.maximum(-winding, winding - helix.winding), 0.0) * radius
     inside = np.maximum(pile.shaft_radius - radius, 0.0)
+    faces = [np.abs(rise + side * half) + beyond + inside for side in (1.0, -1.0)]
+    if helix.is_surface:
+        return [*faces, *(np.full(len(points), np.inf) for _ in (RIM, *ENDS))]
     off_plate = np.maximum(np.abs(rise) - half, 0.0) + beyond
     if helix.edges == "rounded":
         off_nose = np.maximum(distance_to_noses(pile, helix, points), 0.0)
         off_plate = np.minimum(off_plate, off_nose)
     return [
-        np.abs(rise + half) + beyond + inside,
-        np.abs(rise - half) + beyond + inside,
+        *faces,
         np.abs(radius - helix.radius) + off_plate,
         *(_distance_to_edge(pile, helix, points, end) + inside for end in ENDS),
     ]

@@ -16,9 +16,12 @@ from install_mpm.conventions import rotation_matrix
 from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
 from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule, local_axes
 from install_mpm.screw_pile import (
+    LOWER_FACE,
     PARTS_OF_PILE,
+    UPPER_FACE,
     ScrewPile,
     edge_parts,
+    first_part,
 )
 from install_mpm.screw_shape import distance_to_parts, surface_normals
 
@@ -60,7 +63,27 @@ def boundary_parts(
     distance = distance_to_parts(pile, places.reshape(-1, 3)).reshape(*vertices.shape, -1)
     farthest = distance.max(axis=1)
     is_on_pile = farthest.min(axis=1) < ON_SURFACE * pile.shaft_diameter
-    return cell, facet, np.where(is_on_pile, farthest.argmin(axis=1), -1)
+    part = np.where(is_on_pile, farthest.argmin(axis=1), -1)
+    corner, second, third = places.transpose(1, 0, 2)
+    outward = np.cross(second - corner, third - corner)
+    return cell, facet, _of_own_face(pile, part, places.mean(axis=1), outward)
+
+
+def _of_own_face(
+    pile: ScrewPile, part: np.ndarray, place: np.ndarray, outward: np.ndarray
+) -> np.ndarray:
+    """Return ``part`` (n,) with the faces of plates held as surfaces told apart.
+
+    Both lie at the same place; ``outward`` (n, 3) is the way from the soil to the pile.
+    """
+    part = part.copy()
+    for number, helix in enumerate(pile.helices):
+        lower = first_part(number) + LOWER_FACE
+        here = np.flatnonzero((part == lower) & helix.is_surface)
+        upward = surface_normals(pile, part[here], place[here])
+        is_below = (upward * outward[here]).sum(axis=1) > 0.0
+        part[here] = np.where(is_below, lower, first_part(number) + UPPER_FACE)
+    return part
 
 
 def _normals(

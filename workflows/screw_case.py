@@ -43,6 +43,9 @@ LARGEST_AT_EDGES = 2.5
 LARGEST_AT_NOSE = 1.0
 """The same of rounded edges: a quarter turn takes a facet at least, an arc of 0.8 thicknesses."""
 
+LARGEST_ON_SURFACE = 1.6
+"""Largest cell size on a plate held as a surface over its width from shaft to rim."""
+
 LARGEST_STEP = 0.25
 """Largest travel of the rim in a step over the size of the cells at the edges."""
 
@@ -103,6 +106,11 @@ def _check_service(case: ScrewCase) -> None:
         )
     if case.handoff is None or case.service is None:
         return
+    if any(helix.is_surface for helix in case.pile.helices):
+        raise CaseError(
+            'pile.helices with plate = "surface" cannot be handed over to finite elements; leave '
+            'out [handoff] and [service] to stop after the installation, or take plate = "solid"'
+        )
     check_programmes(case.service, case.kinematics)
     limit = largest_size(case.pile)
     if case.handoff.size_at_pile > limit:
@@ -131,6 +139,8 @@ def _check_helices(pile: ScrewPile) -> None:
                 f"{key}.pitch {helix.pitch:g} m is not larger than its thickness "
                 f"{helix.thickness:g} m; the turns of the plate would run into each other"
             )
+        if helix.is_surface:
+            _check_surface(key, helix)
         if helix.edge_thickness is not None:
             _check_taper(key, helix)
         bottom = helix.height - helix.thickness / 2.0
@@ -146,6 +156,18 @@ def _check_helices(pile: ScrewPile) -> None:
             f"pile.embedment {pile.embedment:g} m leaves the top of the uppermost helix, "
             f"{top:g} m above the tip, out of the ground; start deeper"
         )
+
+
+def _check_surface(key: str, helix: Helix) -> None:
+    for name, value, is_shaped in (
+        ("edges", f'"{helix.edges}"', helix.edges != "blunt"),
+        ("edge_thickness", f"{helix.edge_thickness or 0.0:g} m", helix.edge_thickness is not None),
+    ):
+        if is_shaped:
+            raise CaseError(
+                f"{key}.{name} is {value}, but a mesh that holds the plate as a surface has no "
+                f'edges to shape; leave {name} out, or take plate = "solid"'
+            )
 
 
 def _check_taper(key: str, helix: Helix) -> None:
@@ -208,6 +230,9 @@ def _check_sizes(case: ScrewCase) -> None:
         )
     smallest = mesh.size_at_edges
     for helix in pile.helices:
+        if helix.is_surface:
+            _check_size_on_surface(pile, helix, mesh)
+            continue
         edge = edge_thickness(helix)
         at_edges = LARGEST_AT_NOSE if helix.edges == "rounded" else LARGEST_AT_EDGES
         for key, size, limit in (
@@ -217,7 +242,8 @@ def _check_sizes(case: ScrewCase) -> None:
             if size > limit:
                 raise CaseError(
                     f"background_mesh.{key} {size:g} m cannot hold a plate {helix.thickness:g} m "
-                    f"thick ({edge:g} m at its {helix.edges} edges); take at most {limit:g} m"
+                    f"thick ({edge:g} m at its {helix.edges} edges); take at most {limit:g} m, or "
+                    'plate = "surface"'
                 )
         smallest = min(smallest, 2.0 * edge)
     if case.installation.step > LARGEST_STEP * smallest:
@@ -226,3 +252,13 @@ def _check_sizes(case: ScrewCase) -> None:
             f"{LARGEST_STEP:g} of a cell at once; take at most {LARGEST_STEP * smallest:g} m, "
             "or coarser cells at the edges"
         )
+
+
+def _check_size_on_surface(pile: ScrewPile, helix: Helix, mesh: ScrewMeshOptions) -> None:
+    limit = LARGEST_ON_SURFACE * (helix.radius - pile.shaft_radius)
+    for key, size in (("size_at_plate", mesh.size_at_plate), ("size_at_edges", mesh.size_at_edges)):
+        if size > limit:
+            raise CaseError(
+                f"background_mesh.{key} {size:g} m is too coarse for a plate that stands out by "
+                f"{helix.radius - pile.shaft_radius:g} m; take at most {limit:g} m"
+            )

@@ -11,11 +11,13 @@ from rich.table import Table
 
 from install_mpm.background_mesh import cell_quality
 from install_mpm.cells import CellType, reference_cell, sub_region_points
+from install_mpm.edge_resistance import edge_resistance
 from install_mpm.screw_pile_mesh import generate_screw_mesh
-from install_mpm.screw_programme import phase_length
+from install_mpm.screw_programme import phase_length, phase_motion
 from install_mpm.screw_setup import mesh_zones
 from workflows.forecast import BASE_MEMORY, duration
 from workflows.screw_case import ScrewCase
+from workflows.screw_theory import edge_remark
 
 # Cost model, measured with 11 500 to 27 000 unknowns on one core; good to a factor of two.
 ITERATIONS = 5
@@ -86,6 +88,10 @@ def print_screw_forecast(
         table.add_row(name, value)
     console = console or Console()
     console.print(table)
+    first = phase_motion(case.pile, case.installation.phases[0])
+    edges = edge_resistance(case.pile, case.ground, case.interface, 0.0, first)
+    for remark in edge_remark(*edges):
+        console.print(remark)
     console.print(
         f"memory about {sizes.memory / 1e9:.1f} GB, time about {duration(sizes.seconds)} "
         "on one core (the first run also compiles, some minutes)"

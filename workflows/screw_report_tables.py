@@ -37,6 +37,7 @@ def summary_table(case: ScrewCase, installed: InstalledState) -> str:
         ["torque", number(whole(float(history.torque[-1]), "N m"))],
         ["crowd force, downward", number(whole(float(history.crowd_force[-1]), "N"))],
         ["advancement ratio of the last step that turned", number(_last_ratio(history))],
+        *_edge_rows(case, history),
         *_release_rows(case, installed),
         _group("largest on the way"),
         ["torque", number(whole(float(history.torque.max()), "N m"))],
@@ -48,6 +49,21 @@ def summary_table(case: ScrewCase, installed: InstalledState) -> str:
         *winding_rows(installed.history),
     ]  # fmt: skip
     return table([], rows)
+
+
+def _edge_rows(case: ScrewCase, history: ScrewHistory) -> list[Row]:
+    """Return what resists at edges and rims that are not in the mesh; nothing without such."""
+    if not any(helix.is_surface for helix in case.pile.helices):
+        return []
+    torque, force = float(history.edge_torque[-1]), float(history.edge_force[-1])
+    rows: list[Row] = [_group("more, by hand, of edges and rims that are not in the mesh")]
+    if np.isnan(torque):
+        return [*rows, ["torque and crowd force", number("not stated")]]
+    return [
+        *rows,
+        ["torque", number(whole(torque, "N m", 3))],
+        ["crowd force, downward", number(whole(force, "N", 3))],
+    ]
 
 
 def _release_rows(case: ScrewCase, installed: InstalledState) -> list[Row]:

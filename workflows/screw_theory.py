@@ -90,6 +90,19 @@ def last_motion(pile: ScrewPile, history: ScrewHistory) -> Motion:
     )
 
 
+def edge_remark(torque: float, force: float) -> list[str]:
+    """Return the line on what edges and rims resist that are not in the mesh; none if not stated.
+
+    ``torque`` in N m and ``force`` in N.
+    """
+    if np.isnan(torque):
+        return []
+    return [
+        f"edges and rims that are not in the mesh, by hand: {torque / 1e3:.2f} kN m and "
+        f"{force / 1e3:.2f} kN more"
+    ]
+
+
 def part_torques(
     pile: ScrewPile, installed: InstalledState, surface: PileSurface | None
 ) -> list[PartTorque]:

@@ -27,6 +27,10 @@ DEPTH_STEP = 0.04
 """Jump in depth, over the height of the picture, that is drawn as an edge."""
 
 
+SAME_DEPTH = 1e-6
+"""Difference in depth in m up to which triangles lie at the same place."""
+
+
 class View(NamedTuple):
     """Directions of a picture in space, unit vectors."""
 
@@ -77,7 +81,11 @@ def project(places: np.ndarray, view: View) -> np.ndarray:
 
 
 def rasterise(triangles: np.ndarray, view: View, frame: Frame, rows: int) -> Raster:
-    """Return what is seen of ``triangles`` (n, 3, 3) in a picture of ``rows`` pixels height."""
+    """Return what is seen of ``triangles`` (n, 3, 3) in a picture of ``rows`` pixels height.
+
+    Of two triangles at the same place, the sides of a plate without thickness, the one is seen
+    whose corners go round clockwise, as those of facets do from outside the pile.
+    """
     size = (frame.top - frame.bottom) / rows
     columns = max(1, round((frame.right - frame.left) / size))
     triangle = np.full((rows, columns), -1, dtype=np.int64)
@@ -89,7 +97,9 @@ def rasterise(triangles: np.ndarray, view: View, frame: Frame, rows: int) -> Ras
     low = np.clip(np.ceil(corners[:, :, :2].min(axis=1)), 0, None).astype(np.int64)
     last = np.floor(corners[:, :, :2].max(axis=1)).astype(np.int64)
     high = np.minimum(last + 1, (columns, rows))
-    for k in np.flatnonzero((np.abs(twice_area) > 1e-9) & (high > low).all(axis=1)):
+    clockwise_first = np.argsort(twice_area > 0.0, kind="stable")
+    is_drawn = (np.abs(twice_area) > 1e-9) & (high > low).all(axis=1)
+    for k in clockwise_first[is_drawn[clockwise_first]]:
         _draw(k, corners[k], twice_area[k], (low[k], high[k]), triangle, shares, depth)
     return Raster(triangle, shares, depth, frame)
 
@@ -112,7 +122,9 @@ def _draw(
     at_a = 1.0 - at_b - at_c
     here = at_a * a[2] + at_b * b[2] + at_c * c[2]
     window = (slice(y0, y1), slice(x0, x1))
-    is_seen = (at_a >= -1e-9) & (at_b >= -1e-9) & (at_c >= -1e-9) & (here > depth[window])
+    is_seen = (
+        (at_a >= -1e-9) & (at_b >= -1e-9) & (at_c >= -1e-9) & (here > depth[window] + SAME_DEPTH)
+    )
     triangle[window][is_seen] = number
     depth[window][is_seen] = here[is_seen]
     shares[window][is_seen] = np.stack([at_a, at_b, at_c], axis=-1)[is_seen]

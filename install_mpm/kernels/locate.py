@@ -73,23 +73,29 @@ def locate_points(
 
     ``cell`` holds a first guess.  ``facets`` (n_vertices, dim) are the vertices of the facet
     opposite each vertex.  A point outside the mesh is moved (``position`` changes) to the nearest
-    place inside and gets the status ``PROJECTED``.
+    place inside and gets the status ``PROJECTED``; so is one whose way through the mesh, from the
+    place that its old ``cell`` and ``reference_coordinates`` have now, leads across a cut.
     """
     dim = position.shape[1]
-    scratch = np.empty(dim + 1)
+    scratch = np.empty((2, dim + 1))
     nearest = np.empty((2, dim))
+    cut = np.empty(2, dtype=np.int64)
     for p in range(position.shape[0]):
         status[p] = FOUND
-        found = _walk(nodes, cell_nodes, cell_neighbours, position[p], cell[p], scratch)
+        found = _walk(nodes, cell_nodes, cell_neighbours, position[p], cell[p], scratch[0])
+        cut[:] = -1
         if found < 0:
-            found = _search_all(nodes, cell_nodes, position[p], scratch)
+            _place(nodes, cell_nodes[cell[p]], reference_coordinates[p], nearest[0])
+            _first_cut(nodes, cell_nodes, cell_neighbours, nearest[0], position[p], scratch, cut)
+            if cut[0] < 0:
+                found = _search_all(nodes, cell_nodes, position[p], scratch[0])
         if found < 0:
-            found = _project(nodes, cell_nodes, cell_neighbours, facets, position[p], nearest)
+            found = _project(nodes, cell_nodes, cell_neighbours, facets, position[p], nearest, cut)
             status[p] = PROJECTED
-        barycentric(nodes, cell_nodes[found], position[p], scratch)
+        barycentric(nodes, cell_nodes[found], position[p], scratch[0])
         cell[p] = found
         for i in range(dim):
-            reference_coordinates[p, i] = scratch[1 + i]
+            reference_coordinates[p, i] = scratch[0, 1 + i]
 
 
 @jit
@@ -108,6 +114,43 @@ def _walk(nodes, cell_nodes, cell_neighbours, point, start, scratch):
         if c < 0:
             return -1
     return -1
+
+
+@jit
+def _place(nodes, cell_nodes, reference_coordinates, place):
+    """Fill ``place`` (dim,) with that of ``reference_coordinates`` in a cell."""
+    for i in range(place.shape[0]):
+        place[i] = nodes[cell_nodes[0], i]
+        for v in range(reference_coordinates.shape[0]):
+            edge = nodes[cell_nodes[1 + v], i] - nodes[cell_nodes[0], i]
+            place[i] += reference_coordinates[v] * edge
+
+
+@jit
+def _first_cut(nodes, cell_nodes, cell_neighbours, start, end, scratch, cut):
+    """Fill ``cut`` (2,) with cell and facet where a straight way first crosses a cut, if it does.
+
+    Along the way the barycentric coordinates in a cell change linearly; it leaves the cell across
+    facet v where coordinate v changes sign and no other one is negative.
+    """
+    first = 2.0
+    here, there = scratch[0], scratch[1]
+    for c in range(cell_nodes.shape[0]):
+        for v in range(here.shape[0]):
+            if cell_neighbours[c, v] >= -1:
+                continue
+            barycentric(nodes, cell_nodes[c], start, here)
+            barycentric(nodes, cell_nodes[c], end, there)
+            if here[v] < -INSIDE_TOLERANCE or there[v] >= -INSIDE_TOLERANCE:
+                continue
+            share = here[v] / (here[v] - there[v])
+            smallest = 0.0
+            for w in range(here.shape[0]):
+                if w != v:
+                    smallest = min(smallest, here[w] + share * (there[w] - here[w]))
+            if smallest >= -INSIDE_TOLERANCE and share < first:
+                first = share
+                cut[0], cut[1] = c, v
 
 
 @jit
@@ -138,13 +181,18 @@ def _is_beside(nodes, cell_nodes, point, n_vertices):
 
 
 @jit
-def _project(nodes, cell_nodes, cell_neighbours, facets, point, nearest):
-    """Move ``point`` just inside the nearest boundary facet; return the cell behind it."""
+def _project(nodes, cell_nodes, cell_neighbours, facets, point, nearest, cut):
+    """Move ``point`` just inside the nearest boundary facet; return the cell behind it.
+
+    If it has crossed a ``cut`` (cell and facet, or -1), only facets of the cut on that side count.
+    """
     dim = point.shape[0]
     found, found_distance = -1, 1e300
     for c in range(cell_nodes.shape[0]):
         for v in range(dim + 1):
-            if cell_neighbours[c, v] >= 0:
+            if cell_neighbours[c, v] >= (0 if cut[0] < 0 else -1):
+                continue
+            if cut[0] >= 0 and not _face_alike(nodes, cell_nodes, facets, c, v, cut[0], cut[1]):
                 continue
             if dim == 2:
                 _nearest_on_segment(nodes, cell_nodes[c], facets[v], point, nearest[0])
@@ -162,6 +210,25 @@ def _project(nodes, cell_nodes, cell_neighbours, facets, point, nearest):
             centre += nodes[cell_nodes[found, v], i] / (dim + 1.0)
         point[i] = nearest[1, i] + INWARD_SHARE * (centre - nearest[1, i])
     return found
+
+
+@jit
+def _face_alike(nodes, cell_nodes, facets, c, v, other_c, other_v):
+    """Return whether two facets of tetrahedra face the same half of space."""
+    one, other = (
+        _normal(nodes, cell_nodes[c], facets[v]),
+        _normal(nodes, cell_nodes[other_c], facets[other_v]),
+    )
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2] > 0.0
+
+
+@jit
+def _normal(nodes, cell_nodes, corners):
+    """Return a normal of a facet of a tetrahedron, out of the cell."""
+    a, b, c = cell_nodes[corners[0]], cell_nodes[corners[1]], cell_nodes[corners[2]]
+    u0, u1, u2 = nodes[b, 0] - nodes[a, 0], nodes[b, 1] - nodes[a, 1], nodes[b, 2] - nodes[a, 2]
+    v0, v1, v2 = nodes[c, 0] - nodes[a, 0], nodes[c, 1] - nodes[a, 1], nodes[c, 2] - nodes[a, 2]
+    return u1 * v2 - u2 * v1, u2 * v0 - u0 * v2, u0 * v1 - u1 * v0
 
 
 @jit

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from workflows.verification.circular_footing_solid import circular_footing
-from workflows.verification.screw_pile_work import screw_pile_work
+from workflows.verification.screw_pile_work import screw_pile_work, screw_plate_work
 from workflows.verification.solid_meshes import extruded, quadratic_mesh, sector
+from workflows.verification.surface_plate import surface_plate
 
 
 def assert_met(outcome):
@@ -21,6 +22,18 @@ def assert_met(outcome):
 @pytest.mark.parametrize("parameters", [{}, {"D": 1.7, "d": 0.88, "p": 0.56, "su": 30e3}])
 def test_screw_pile_work(parameters):
     assert_met(screw_pile_work(**parameters))
+
+
+@pytest.mark.gmsh
+@pytest.mark.slow
+def test_screw_plate_work():
+    assert_met(screw_plate_work())
+
+
+@pytest.mark.gmsh
+@pytest.mark.slow
+def test_plate_without_thickness_in_soil_that_hardly_moves():
+    assert_met(surface_plate())
 
 
 @pytest.mark.slow

@@ -53,6 +53,27 @@ REFUSED = {
         ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='20 mm', height='0.25 m'}]"],
         "cannot hold a plate 0.02 m thick",
     ),
+    "surface handed over to finite elements": (
+        ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='20 mm', height='0.25 m', "
+         "plate='surface'}]", "background_mesh.size_at_plate='0.3 m'"],
+        "cannot be handed over to finite elements",
+    ),
+    "rounded edges of a surface": (
+        ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='20 mm', height='0.25 m', "
+         "plate='surface', edges='rounded'}]"],
+        'edges is "rounded", but a mesh that holds the plate as a surface has no edges',
+    ),
+    "tapered surface": (
+        ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='20 mm', height='0.25 m', "
+         "plate='surface', edge_thickness='10 mm'}]"],
+        "edge_thickness is 0.01 m, but",
+    ),
+    "cells wider than a surface": (
+        ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='20 mm', height='0.25 m', "
+         "plate='surface'}]", "background_mesh.size_at_plate='0.5 m'"],
+        "size_at_plate 0.5 m is too coarse for a plate that stands out by 0.25 m; take at most "
+        "0.4 m",
+    ),
     "rounded edges that one facet would cut off": (
         ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='0.12 m', height='0.25 m', "
          "edges='rounded'}]"],

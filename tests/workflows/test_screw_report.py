@@ -135,6 +135,7 @@ def row_of(case, number, travel, pose):
         "projected_points": 0, "smallest_cell_quality": 0.05,
         "smallest_volume_ratio": 0.99, "largest_volume_ratio": 1.01,
         "advancement_ratio": 0.875 if number else np.nan,
+        "edge_torque": np.nan, "edge_force": np.nan,
         "mass_error": 1e-16, "volume_error": 2e-15, "pressure_scatter": 3e3 + number,
         "winding_stress_change": 0.02 if number == 2 else np.nan,
         "winding_force_change": -250.0 if number == 2 else np.nan,
@@ -397,6 +398,16 @@ def test_the_nearer_triangle_hides_the_other():
     edges = feature_edges(raster, np.array([0, 1]))
     assert edges.any()
     assert not edges[40, 40]
+
+
+@pytest.mark.parametrize("seen", [0, 1])
+def test_of_both_sides_of_a_surface_the_one_towards_the_viewer_is_drawn(seen):
+    """Corners of facets go round clockwise from outside the pile."""
+    view = view_from(0.3, 0.5)
+    clockwise = np.array([-view.right, view.up, view.right])
+    sides = np.stack([clockwise, clockwise[::-1]])[[seen, 1 - seen]]
+    raster = rasterise(sides, view, Frame(-1.0, 1.0, -1.0, 1.0), 40)
+    assert set(np.unique(raster.triangle)) == {-1, seen}
 
 
 def test_check_draws_the_mesh(case, tmp_path):

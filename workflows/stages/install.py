@@ -25,7 +25,7 @@ from workflows.progress import Advance, no_progress
 from workflows.report_units import FORCE_UNIT
 from workflows.screw_case import ScrewCase
 from workflows.screw_export import frame_interval, frame_writer
-from workflows.screw_theory import driven
+from workflows.screw_theory import driven, edge_remark
 from workflows.state_files import read_checked
 
 
@@ -131,7 +131,8 @@ def _torque(installed: InstalledState) -> list[str]:
     torque, force = float(history.torque[-1]), float(history.crowd_force[-1])
     return [
         f"rotation {turns:.3g} turns, torque {torque / 1e3:.2f} kN m, "
-        f"crowd force {force / 1e3:.2f} kN when the rig stopped"
+        f"crowd force {force / 1e3:.2f} kN when the rig stopped",
+        *edge_remark(float(history.edge_torque[-1]), float(history.edge_force[-1])),
     ]
 
 

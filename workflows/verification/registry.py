@@ -58,6 +58,7 @@ MODULES: tuple[str, ...] = (
     "soil_elements",
     "strip_footing_fe",
     "strip_footing_mpm",
+    "surface_plate",
     "tangent_check",
     "thin_helix",
     "thick_cylinder",

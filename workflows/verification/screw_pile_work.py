@@ -10,6 +10,7 @@ alone, so their sum is a second account of the work on the soil.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -24,7 +25,7 @@ from install_mpm.integration_points import IntegrationPoints
 from install_mpm.options import Box, Numerics, ScrewMeshOptions
 from install_mpm.screw_installation import accept, next_step, step_to
 from install_mpm.screw_path import START, Target
-from install_mpm.screw_pile import Helix, ScrewPile
+from install_mpm.screw_pile import LOWER_FACE, UPPER_FACE, Helix, ScrewPile, first_part
 from install_mpm.screw_pile_mesh import generate_screw_mesh
 from install_mpm.screw_programme import Phase, ScrewProgramme, phase_motion, rim_travel
 from install_mpm.screw_record import Work, work_of_step
@@ -34,7 +35,15 @@ from install_mpm.state_file import InstalledState
 from install_mpm.step import StepResult
 from install_mpm.step_control import cut_control
 from workflows.verification.body import ProblemNotSolvedError
-from workflows.verification.problem import Outcome, Problem, Series, absolute, at_most
+from workflows.verification.problem import (
+    Outcome,
+    Problem,
+    Series,
+    absolute,
+    at_least,
+    at_most,
+)
+from workflows.verification.references.screw_pile import helix_resistance
 
 MODULUS_OVER_STRENGTH, POISSON, UNIT_WEIGHT = 200.0, 0.49, 8e3
 INTERFACE_STIFFNESS = 50.0
@@ -43,6 +52,11 @@ NUMERICS = Numerics(tolerance=1e-9)
 
 ROUND_OFF = 1e-11
 """Relative residuals below this are round-off: the ground weighs much more than the pile pushes."""
+
+SIZES = ScrewMeshOptions(0.25, 0.45, 0.4, 1.2, 0.05)
+SIZES_ON_SURFACE = ScrewMeshOptions(0.12, 0.2, 0.25, 1.2, 0.05)
+"""Cell sizes over the diameter; on a plate without thickness for its closed form."""
+SIZE_KEYS = ("size_at_edges", "size_at_plate", "size_at_shaft", "size_far", "edge_reach")
 
 LOADED_UP = float(np.radians(3.0))
 """Rotation that is left out of the split: the soil is loaded up in it."""
@@ -75,7 +89,44 @@ def screw_pile_work(
     steps: int = 40,
 ) -> Outcome:
     """Return the power balance of a helix of diameter D on a shaft of diameter d in clay."""
-    problem, state = _problem((D, d, p, t), su, alpha, AR, np.radians(degrees_per_step))
+    helix = Helix(D, p, t, height=0.25 * D)
+    problem, state = _problem(helix, d, su, alpha, AR, np.radians(degrees_per_step))
+    return _balance(problem, state, steps)[0]
+
+
+def screw_plate_work(
+    *,
+    D: Length = 1.0,
+    d: Length = 0.5,
+    p: Length = 0.33,
+    su: Annotated[float, Unit("Pa")] = 10e3,
+    alpha: float = 0.5,
+    degrees_per_step: float = 1.0,
+    steps: int = 5,
+) -> Outcome:
+    """Return the same of a plate without thickness, and the torque on its faces.
+
+    That is at least the closed form of PC1, less 3 % for facets that are inscribed: soil that gives
+    way has normal traction on the faces beside full adhesion.
+    """
+    helix = Helix(D, p, 0.03 * D, height=0.25 * D, plate="surface")
+    problem, state = _problem(
+        helix, d, su, alpha, 1.0, np.radians(degrees_per_step), SIZES_ON_SURFACE
+    )
+    outcome, end = _balance(problem, state, steps)
+    faces = [first_part(0) + face for face in (LOWER_FACE, UPPER_FACE)]
+    torque = float(end.history.part_torque[-1, faces].sum())
+    exact = helix_resistance(
+        helix_diameter=D, shaft_diameter=d, pitch=p, shear_strength=alpha * su
+    ).torque
+    own = at_least("torque on both faces over the closed form", torque / exact, 0.97)
+    return replace(outcome, checks=(*outcome.checks, own))
+
+
+def _balance(
+    problem: ScrewInstallation, state: InstalledState, steps: int
+) -> tuple[Outcome, InstalledState]:
+    """Return the power balance of so many steps, and the state after them."""
     end = steps * problem.programme.step
     works, splits, residuals = [], [], []
     target = START
@@ -88,7 +139,7 @@ def screw_pile_work(
         if state.history.travel[-1] > end * (1.0 - 1e-9):
             turned = np.abs(state.history.rotation[1:])  # the first step moves nothing
             loading = min(int(np.sum(turned < LOADED_UP * (1.0 - 1e-9))) + 1, len(turned) - 1)
-            return _outcome(works[1:], splits[1:], residuals, loading)
+            return _outcome(works[1:], splits[1:], residuals, loading), state
         state, result, target = _advance(problem, state)
 
 
@@ -144,20 +195,18 @@ def _outcome(
 
 
 def _problem(
-    size: tuple[float, float, float, float], strength: float, alpha: float, ratio: float,
-    angle: float,
+    helix: Helix, shaft: float, strength: float, alpha: float, ratio: float, angle: float,
+    sizes: ScrewMeshOptions = SIZES,
 ) -> tuple[ScrewInstallation, InstalledState]:  # fmt: skip
     """Return the problem and its start, for steps of ``angle`` in rad.
 
-    ``size`` is diameter, shaft diameter, pitch and thickness; box and cells scale with the first.
+    ``shaft`` is the diameter of that in m; box and cells scale with the diameter of the helix, of
+    which ``sizes`` are shares.
     """
-    diameter, shaft, pitch, thickness = size
-    helix = Helix(diameter, pitch, thickness, height=0.25 * diameter)
+    diameter = helix.diameter
     pile = ScrewPile(shaft, 1.2 * diameter, (helix,), UNIT_WEIGHT)
     box = Box(2.75 * diameter, 3.0 * diameter, 0.5 * diameter)
-    sizes = ScrewMeshOptions(
-        0.25 * diameter, 0.45 * diameter, 0.4 * diameter, 1.2 * diameter, 0.05 * diameter
-    )
+    sizes = replace(sizes, **{key: diameter * getattr(sizes, key) for key in SIZE_KEYS})
     modulus = MODULUS_OVER_STRENGTH * strength
     soil, stiffness = VonMises(modulus, POISSON, strength), INTERFACE_STIFFNESS * modulus
     law = CoulombInterface(stiffness, 0.1 * stiffness, adhesion_factor=alpha)
@@ -238,4 +287,8 @@ def _trial_strain(deformation: np.ndarray, strain: np.ndarray) -> np.ndarray:
     return trial
 
 
-PROBLEM = Problem("PC2", "Work of the rig on a screw pile", screw_pile_work, is_quick=False)
+PROBLEMS = (
+    Problem("PC2", "Work of the rig on a screw pile", screw_pile_work, is_quick=False),
+    Problem("PC2-PLATE", "Work of the rig on a screw pile, plate without thickness",
+            screw_plate_work, is_quick=False),
+)  # fmt: skip
