@@ -13,12 +13,7 @@ from handoff.interface_transfer import FESurface
 from handoff.options import HandoffOptions
 from handoff.placed_pile import PlacedPile
 from handoff.tensor_arrays import relative_norm
-from handoff.transfer import (
-    TransferWeights,
-    least_squares_weights,
-    nearest_weights,
-    transferred,
-)
+from handoff.transfer import TransferWeights, least_squares_weights, transferred
 from install_mpm.conventions import vertical_axis
 from install_mpm.geostatic import reference_state
 from install_mpm.ground import GroundProfile, material_at
@@ -65,6 +60,13 @@ def state_map(
     relative_distance = weights.distance / point_sizes(points, placed.kinematics)[weights.nearest]
     share = (relative_distance - FALLBACK_FROM) / (FALLBACK_FULL - FALLBACK_FROM)
     return StateMap(weights, relative_distance, np.clip(share, 0.0, 1.0))
+
+
+def nearest_weights(weights: TransferWeights) -> TransferWeights:
+    """Return weights that take the state of the nearest visible point of ``weights`` as it is."""
+    return weights._replace(
+        neighbours=weights.nearest[:, None], weights=np.ones((len(weights.nearest), 1))
+    )
 
 
 def state_map_onto(

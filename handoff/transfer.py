@@ -81,13 +81,6 @@ def least_squares_weights(
     return result
 
 
-def nearest_weights(weights: TransferWeights) -> TransferWeights:
-    """Return weights that take the state of the nearest visible point of ``weights`` as it is."""
-    return weights._replace(
-        neighbours=weights.nearest[:, None], weights=np.ones((len(weights.nearest), 1))
-    )
-
-
 def transferred(weights: TransferWeights, values: np.ndarray) -> np.ndarray:
     """Return ``values`` (point, ...) at the targets, (target, ...)."""
     columns = values.reshape(len(values), -1)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from handoff.line_of_sight import Obstacle, is_hidden_by_wall
+from handoff.state_transfer import nearest_weights
 from handoff.transfer import (
     least_squares_weights,
-    nearest_weights,
     transfer_least_squares,
     transfer_nearest,
     transferred,
