@@ -25,8 +25,8 @@ def ratio_note(results: dict[str, Any]) -> str:
     repeats = results.get("repeats")
     if not repeats:
         return NOTE.format(range=WITHOUT_RANGE)
-    whats = "; ".join(escape(repeat["what"]) for repeat in repeats.values())
-    return NOTE.format(range=WITH_RANGE.format(repeats=whats)) + details(
+    changes = "; ".join(escape(repeat["what"]) for repeat in repeats.values())
+    return NOTE.format(range=WITH_RANGE.format(repeats=changes)) + details(
         "Ratios of the repeats", repeats_table(results) + _failed(repeats)
     )
 
