@@ -64,7 +64,7 @@ def hand_over(
     problem = make_problem(mesh)
 
     observe("transfer")
-    chart = state_map_onto(problem, points, placed, options.neighbours)
+    chart = state_map_onto(problem, points, placed, options)
     raw = transfer_state(installed, ground, placed, problem, chart)
 
     observe("admissibility")

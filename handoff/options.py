@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal
 
 from annotated_types import Ge, Gt, Le
 
@@ -11,6 +11,7 @@ from install_mpm.conventions import Unit
 
 Length = Annotated[float, Unit("m"), Gt(0)]
 Share = Annotated[float, Gt(0), Le(1)]
+Transfer = Literal["least_squares", "nearest"]
 
 
 @dataclass(frozen=True)
@@ -24,6 +25,8 @@ class HandoffOptions:
     size_far: Length
     neighbours: Annotated[int, Ge(6)] = 32
     """Material points in each least-squares fit."""
+    transfer: Transfer = "least_squares"
+    """How the state comes from the points: by least-squares fits, or that of the nearest point."""
     equilibration_steps: Annotated[int, Ge(1)] = 5
     """Ramps in which the out-of-balance force of the transferred state is released."""
     max_synthetic_error: Share = 0.05

@@ -10,6 +10,7 @@ from handoff.equilibration import EquilibriumProblem
 from handoff.fe_state_file import FEState
 from handoff.geostatic import elastic_strain_of
 from handoff.interface_transfer import FESurface
+from handoff.options import HandoffOptions
 from handoff.placed_pile import PlacedPile
 from handoff.tensor_arrays import relative_norm
 from handoff.transfer import TransferWeights, least_squares_weights, transferred
@@ -39,7 +40,7 @@ class StateMap(NamedTuple):
 
 
 def state_map(
-    points: MaterialPoints, placed: PlacedPile, targets: np.ndarray, neighbours: int
+    points: MaterialPoints, placed: PlacedPile, targets: np.ndarray, options: HandoffOptions
 ) -> StateMap:
     """Return the map from material points to ``targets`` (n_q, dim).
 
@@ -48,19 +49,31 @@ def state_map(
     Raises
     ------
     ValueError
-        If there are fewer material points than ``neighbours``.
+        If there are fewer material points than ``options.neighbours``.
     """
     measure = plane_area(points, placed.kinematics)
     weights = least_squares_weights(
-        points.position, measure, targets, neighbours, placed.obstacle()
+        points.position, measure, targets, options.neighbours, placed.obstacle()
     )
+    if options.transfer == "nearest":
+        weights = nearest_weights(weights)
     relative_distance = weights.distance / point_sizes(points, placed.kinematics)[weights.nearest]
     share = (relative_distance - FALLBACK_FROM) / (FALLBACK_FULL - FALLBACK_FROM)
     return StateMap(weights, relative_distance, np.clip(share, 0.0, 1.0))
 
 
+def nearest_weights(weights: TransferWeights) -> TransferWeights:
+    """Return weights that take the state of the nearest visible point of ``weights`` as it is."""
+    return weights._replace(
+        neighbours=weights.nearest[:, None], weights=np.ones((len(weights.nearest), 1))
+    )
+
+
 def state_map_onto(
-    problem: EquilibriumProblem, points: MaterialPoints, placed: PlacedPile, neighbours: int
+    problem: EquilibriumProblem,
+    points: MaterialPoints,
+    placed: PlacedPile,
+    options: HandoffOptions,
 ) -> StateMap:
     """Return the map from material points to all integration points of ``problem``.
 
@@ -69,10 +82,10 @@ def state_map_onto(
     Raises
     ------
     ValueError
-        If there are fewer material points than ``neighbours``.
+        If there are fewer material points than ``options.neighbours``.
     """
     targets = problem.integration_positions[problem.own_points]
-    own = state_map(points, placed, targets, neighbours)
+    own = state_map(points, placed, targets, options)
     return StateMap(
         TransferWeights(*map(problem.whole, own.weights)),
         problem.whole(own.relative_distance),

@@ -21,6 +21,7 @@ from install_mpm.options import (
 )
 from install_mpm.pile import Pile
 from service_fe.options import ServiceOptions
+from workflows.comparison import ComparisonOptions
 from workflows.cross_checks import check
 from workflows.errors import CaseError
 from workflows.overrides import apply_overrides
@@ -49,6 +50,8 @@ class Case:
     numerics: Numerics
     handoff: HandoffOptions
     service: ServiceOptions
+    comparison: ComparisonOptions | None = None
+    """Without it the ratios installed over wished in place have no range."""
 
     @property
     def final_tip_depth(self) -> float:

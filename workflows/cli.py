@@ -103,6 +103,14 @@ def wished(case: CaseFile, output: Output = None, overrides: Overrides = None) -
 
 
 @app.command()
+def repeat(directory: Results) -> None:
+    """Repeat hand-over and service on a second mesh and with a second transfer."""
+    from workflows.runner import run_from_files
+
+    run_from_files("repeat", directory)
+
+
+@app.command()
 def compare(directory: Results) -> None:
     """Compare installed and wished in place; writes curves.csv and summary.json."""
     from workflows.runner import run_from_files

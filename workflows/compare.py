@@ -12,26 +12,24 @@ from install_mpm.conventions import Kinematics
 from install_mpm.history import History
 from install_mpm.pile import PilePart
 from install_mpm.state_file import InstalledState
-from service_fe.loading import RELEASED
-from service_fe.options import Displace, Lateral, Rotate
+from service_fe.cycles import accumulated
+from service_fe.options import Cycles, Load, Release, Rotate
 from service_fe.results import (
     LINEAR_WORK,
     Curve,
     ProgrammeResult,
     ServiceResult,
     characteristics,
-    head_load_at,
 )
 from workflows.case import AnyCase
+from workflows.comparison import has_ratio
+from workflows.continuity import continuity_figures
 from workflows.screw_theory import driven
 
 COLUMNS = ("programme", "model", "displacement_m", "head_load_N", "iterations", "residual")
 
 QUADRATIC_ORDER = 1.8
 """Order of convergence from which the end of a residual history counts as quadratic."""
-
-CONTINUITY_SHARES = (0.02, 0.05)
-"""Displacements, over the pile width, at which pushing on is compared with the installation."""
 
 
 def curves_csv(results: list[ServiceResult]) -> str:
@@ -60,15 +58,16 @@ def headline(
     case: AnyCase, installed: InstalledState, service: ServiceResult, wished: ServiceResult
 ) -> dict[str, Any]:
     """Return the headline results of a run as plain data; names carry the SI unit."""
+    installation = installation_figures(installed)
     return {
-        "installation": installation_figures(installed),
+        "installation": installation,
         "service": {
             result.programme.name: programme_figures(
                 result, wished.programme(result.programme.name), case.pile.width
             )
             for result in service.programmes
         },
-        "continuity": continuity_figures(case, installed, service),
+        "continuity": continuity_figures(case, installation, service),
     }
 
 
@@ -107,7 +106,12 @@ def programme_figures(
     A ratio is taken where both models start without head load, i.e. from the released pile.
     """
     programme = installed.programme
-    if not isinstance(programme, Displace | Lateral | Rotate):
+    if isinstance(programme, Cycles):
+        return {
+            "installed": _cyclic_figures(programme, installed.curve),
+            "wished_in_place": _cyclic_figures(programme, wished.curve),
+        }
+    if isinstance(programme, Release | Load):
         return {
             "installed": _release_figures(installed.curve),
             "wished_in_place": _release_figures(wished.curve),
@@ -116,7 +120,7 @@ def programme_figures(
         "installed": _curve_figures(installed, pile_width),
         "wished_in_place": _curve_figures(wished, pile_width),
     }
-    if programme.start != RELEASED:
+    if not has_ratio(programme):
         return figures
     ratios = {
         name: _ratio(value, figures["wished_in_place"][name])
@@ -145,35 +149,19 @@ def _release_figures(curve: Curve) -> dict[str, float]:
     }
 
 
+def _cyclic_figures(programme: Cycles, curve: Curve) -> dict[str, float]:
+    """Return what one cycle and all cycles have left behind, at the mean load."""
+    ends = accumulated(programme, curve)
+    return {
+        "cycles": programme.cycles,
+        "rotation_after_first_cycle_rad": float(ends.rotation[1] - ends.rotation[0]),
+        "accumulated_rotation_rad": float(ends.rotation[-1] - ends.rotation[0]),
+        "accumulated_displacement_m": float(ends.displacement[-1] - ends.displacement[0]),
+    }
+
+
 def _ratio(installed: float | None, wished: float | None) -> float | None:
     return None if installed is None or not wished else installed / wished
-
-
-def continuity_figures(
-    case: AnyCase, installed: InstalledState, service: ServiceResult
-) -> dict[str, Any]:
-    """Return the resistance to being pushed on over the crowd force at the end of jacking.
-
-    Taken from every downward programme that starts from the equilibrated state, as far as it goes;
-    empty if the pile was not moved.
-    """
-    force = installation_figures(installed)["crowd_force_N"]
-    if float(installed.pile.penetration) == 0.0 or force == 0.0:
-        return {}
-    width = case.pile.width
-    figures: dict[str, Any] = {}
-    for result in service.programmes:
-        programme = result.programme
-        if not isinstance(programme, Displace) or programme.start != "equilibrated":
-            continue
-        reached = programme.displacement * (1.0 + 1e-9)
-        figures[programme.name] = {
-            f"head_load_over_crowd_force_at_{share:g}_B": head_load_at(result.curve, share * width)
-            / force
-            for share in CONTINUITY_SHARES
-            if share * width <= reached
-        }
-    return figures
 
 
 def convergence(installed: InstalledState, results: list[ServiceResult]) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from install_mpm.conventions import Kinematics
 from service_fe.loading import contradiction
 from service_fe.options import IN_THE_PLANE, ServiceOptions
+from workflows.comparison import check_comparison
 from workflows.errors import CaseError
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ def check(case: Case) -> None:
     check_programmes(case.service, case.kinematics)
     check_interface(case)
     check_solver(case)
+    check_comparison(case, check)
 
 
 def _check_kinematics(case: Case) -> None:

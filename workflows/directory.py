@@ -18,6 +18,8 @@ CERTIFICATE = "certificate.json"
 SERVICE = "service.h5"
 WISHED = "wished_in_place"
 WISHED_SERVICE = f"{WISHED}/{SERVICE}"
+REPEATS = "repeated"
+REPEATED = "repeated.json"
 CURVES = "curves.csv"
 WISHED_CURVES = f"{WISHED}/{CURVES}"
 SUMMARY = "summary.json"
@@ -51,6 +53,9 @@ WISHED_KEYS = (
 
 SERVICE_KEYS = (*HANDOFF_KEYS, "service")
 """Sections of the case that decide the service results."""
+
+COMPARISON_KEYS = (*SERVICE_KEYS, "comparison")
+"""Sections of the case that decide the ratios and their ranges."""
 
 
 def write_text(path: Path, text: str) -> None:

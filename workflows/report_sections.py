@@ -19,6 +19,7 @@ from workflows.certified import warning_html
 from workflows.interactive import interactive
 from workflows.report_data import Results
 from workflows.report_html import code, details, figure
+from workflows.report_repeats import ratio_note
 from workflows.report_text import CAPTIONS, LIMITS, METHOD, SHAPE_LIMITS
 from workflows.report_units import shown, significant
 
@@ -49,10 +50,11 @@ def results_html(results: Results) -> str:
     """Return cards, failed checks and the headline table."""
     warning = warning_html(results.certificate)
     note = (
-        "<p>Ratio: installed over wished in place. B is the pile's width. Downward displacement "
-        "and load are positive, so uplift is negative.</p>"
+        "<p>B is the pile's width. Downward displacement and load are positive, so uplift is "
+        "negative.</p>"
     )
-    return cards_html(results) + warning + report_tables.headline_table(results) + note
+    worth = ratio_note(results.summary["results"])
+    return cards_html(results) + warning + report_tables.headline_table(results) + note + worth
 
 
 def cards_html(results: Results) -> str:
@@ -65,7 +67,8 @@ def cards_html(results: Results) -> str:
     for name, programme in figures["service"].items():
         ratio = programme.get("ratio", {}).get("capacity")
         if ratio is not None:
-            change = f"{100.0 * (ratio - 1.0):+.0f} %".replace("-", "−")
+            deviation = programme.get("ratio_range", {}).get("capacity")
+            change = _percent(ratio - 1.0, deviation)
             spaced = escape(report_tables.spaced(name))
             cards.append((change, f"capacity in {spaced} against wished in place"))
     for shares in figures["continuity"].values():
@@ -73,6 +76,12 @@ def cards_html(results: Results) -> str:
             cards.append((significant(share, 3), "resistance pushed on over installation force"))
     html = (f'<div class="card"><b>{value}</b><span>{text}</span></div>' for value, text in cards)
     return f'<div class="cards">{"".join(html)}</div>'
+
+
+def _percent(change: float, deviation: float | None) -> str:
+    """Return a change in per cent, with its range if it has one."""
+    text = f"{100.0 * change:+.1f}".replace("-", "−")
+    return f"{text} %" if deviation is None else f"{text} ± {100.0 * deviation:.1f} %"
 
 
 def case_html(results: Results) -> str:

@@ -23,7 +23,7 @@ from service_fe.results import (
     head_load_at,
 )
 from workflows.case import AnyCase, Case
-from workflows.compare import CONTINUITY_SHARES
+from workflows.continuity import CONTINUITY_SHARES
 from workflows.report_fields import (
     colour_bar,
     draw_nodal,

@@ -12,7 +12,7 @@ from service_fe.results import LINEAR_WORK
 from workflows.case import Case
 from workflows.report_data import Results
 from workflows.report_html import Cell, badge, cell, number, table
-from workflows.report_units import plain, shown, significant
+from workflows.report_units import plain, shown, significant, value_and_range
 
 MODELS = ("installed", "wished_in_place")
 
@@ -79,11 +79,11 @@ def _programme_rows(
         yield group_row(spaced(name))
         for key, (text, unit) in CURVE_FIGURES.items():
             values = [programme[model][f"{key}_{unit}"] for model in MODELS]
-            ratio = programme["ratio"][key]
+            ratio, deviation = programme["ratio"][key], programme.get("ratio_range", {}).get(key)
             yield [
                 text,
                 *(number(shown(value, unit, 4, kinematics)) for value in values),
-                number("–" if ratio is None else significant(ratio, 3)),
+                number(value_and_range(ratio, deviation)),
             ]
 
 

@@ -85,6 +85,13 @@ def significant(value: float, digits: int = 4) -> str:
     return f"{value:.{decimals}f}".replace("-", "−")
 
 
+def value_and_range(value: float | None, deviation: float | None) -> str:
+    """Return a ratio as text, with its range if it has one; a dash if there is none."""
+    if value is None:
+        return "–"
+    return significant(value, 3) if deviation is None else f"{value:.3f} ± {deviation:.3f}"
+
+
 def plain(value: Any, unit: str = "") -> str:
     """Return an option of a case as text: numbers without trailing zeros, words as they are."""
     if isinstance(value, Enum):

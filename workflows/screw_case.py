@@ -23,6 +23,7 @@ from install_mpm.screw_programme import (
 )
 from install_mpm.screw_setup import lowest_tip
 from service_fe.options import ServiceOptions
+from workflows.comparison import ComparisonOptions, check_comparison
 from workflows.cross_checks import (
     check_ground,
     check_interface,
@@ -70,6 +71,8 @@ class ScrewCase:
     handoff: HandoffOptions | None = None
     """Without it and ``service`` the run ends after the installation."""
     service: ServiceOptions | None = None
+    comparison: ComparisonOptions | None = None
+    """Without it the ratios installed over wished in place have no range."""
 
     @property
     def final_tip_depth(self) -> float:
@@ -95,6 +98,7 @@ def check_screw_case(case: ScrewCase) -> None:
     check_interface(case)
     check_solver(case)
     _check_service(case)
+    check_comparison(case, check_screw_case)
 
 
 def _check_service(case: ScrewCase) -> None:

@@ -21,6 +21,7 @@ from workflows.interactive_curves import torque_and_force
 from workflows.interactive_space import view
 from workflows.report import filled_page
 from workflows.report_html import code, details, figure
+from workflows.report_repeats import ratio_note
 from workflows.report_sections import Section
 from workflows.report_style import styled
 from workflows.screw_animation import animation
@@ -68,12 +69,13 @@ def sections(directory: Path, case: ScrewCase, installed: InstalledState) -> lis
         + parts[0].html
         + "<h3>Installed against wished in place</h3>"
         + in_service.comparison_table(files)
+        + ratio_note(files.summary["results"])
     )
     return [
         first,
         *parts[1:-2],
         Section("handoff", "Hand-over", in_service.handoff_html(case, installed, files)),
-        Section("service", "Service", in_service.service_html(case, files)),
+        Section("service", "Service", in_service.service_html(case, installed, files)),
         *parts[-2:],
         Section("provenance", "Provenance", in_service.provenance_html(files)),
     ]

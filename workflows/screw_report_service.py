@@ -31,9 +31,11 @@ from workflows.report_tables import (
     timing_table,
     version_table,
 )
-from workflows.report_units import significant
+from workflows.report_units import significant, value_and_range
 from workflows.screw_along import along_pile, lateral_programmes
 from workflows.screw_case import ScrewCase
+from workflows.screw_continuity import continuity, continuity_table
+from workflows.screw_cycles import cycles_picture, cycles_plot, cyclic_programmes
 from workflows.screw_frames import PointCloud
 from workflows.screw_report_ground import pose_of
 from workflows.screw_report_text import SERVICE_CAPTIONS, SERVICE_LIMITS
@@ -80,13 +82,17 @@ def read_service_files(directory: Path, case: ScrewCase) -> ServiceFiles:
 
 
 def comparison_table(files: ServiceFiles) -> str:
-    """Return stiffness and capacities of both models in every programme, and their ratio."""
+    """Return stiffness and capacities of both models in every programme, and their ratio.
+
+    Below it stands what the ratio is worth.
+    """
     head: list[str | Cell] = ["", *map(number, ("installed", "wished in place", "ratio"))]
     rows: list[list[str | Cell]] = []
     for name, programme in files.summary["results"]["service"].items():
         if "ratio" not in programme:
             continue
         rows.append(group_row(spaced(name)))
+        deviations = programme.get("ratio_range", {})
         for key, ratio in programme["ratio"].items():
             unit = next(k for k in programme["installed"] if k.startswith(f"{key}_"))
             unit = unit.removeprefix(f"{key}_")
@@ -95,7 +101,7 @@ def comparison_table(files: ServiceFiles) -> str:
                 [
                     f"{spaced(key)} ({UNIT_NAMES[unit]})",
                     *(number(_scaled(value, unit)) for value in values),
-                    number("–" if ratio is None else significant(ratio, 3)),
+                    number(value_and_range(ratio, deviations.get(key))),
                 ]
             )
     return table(head, rows)
@@ -165,7 +171,29 @@ def fe_cloud(integration: FEIntegrationPoints, state: FEState) -> PointCloud:
     return PointCloud(integration.position, still, pressure, integration.volume)
 
 
-def service_html(case: ScrewCase, files: ServiceFiles) -> str:
+def cycles_html(files: ServiceFiles, name: str) -> str:
+    """Return what the cycles of a programme leave behind."""
+    return interactive(
+        f"cycles-{name}",
+        cycles_picture(files.service, files.wished, name),
+        cycles_plot(files.service, files.wished, name),
+        f"{spaced(name)}: {caption('cycles')}",
+    )
+
+
+def continuity_html(case: ScrewCase, installed: InstalledState, files: ServiceFiles) -> str:
+    """Return how the pile that is moved on takes up the installation's loads; nothing if it is not.
+
+    Loads of a pile without installation cannot be continued.
+    """
+    results = files.summary["results"]
+    if not results["continuity"]:
+        return ""
+    picture = captioned("continuity", continuity(case, installed, files.service))
+    return f"<h3>Continuity</h3>{picture}{continuity_table(results)}"
+
+
+def service_html(case: ScrewCase, installed: InstalledState, files: ServiceFiles) -> str:
     """Return curves, figures, convergence and what limits them."""
     return "\n".join(
         [
@@ -184,6 +212,8 @@ def service_html(case: ScrewCase, files: ServiceFiles) -> str:
                 )
                 for name in lateral_programmes(files.service)
             ),
+            *(cycles_html(files, name) for name in cyclic_programmes(files.service)),
+            continuity_html(case, installed, files),
             "<h3>Convergence</h3>",
             convergence_table(files.summary["convergence"]),
             SERVICE_LIMITS,

@@ -117,17 +117,21 @@ SERVICE_CAPTIONS = {
         deflection, force p of the soil per length against the load, and of a deformable pile shear
         force and bending moment from the stress in its sections. Right: p over the deflection y at
         some levels, darker with the depth. All are changes since the start of the programme.""",
+    "cycles": """what the cycles leave behind. Tilt of the pile in the direction of the load, and
+        displacement of the point of load, since the start of the packet: at the mean load at the
+        end of each cycle (dots), and at the peaks of the load (dashed).""",
+    "continuity": """Continuity: the pile is moved on in the finite elements as if the rig had not
+        stopped. Torque and force should take up those of the installation, after the few
+        millimetres in which soil and interface are strained again.""",
 }
 
 SERVICE_LIMITS = """
 <h3>What limits the results in service</h3>
 <ul>
 <li>Strains in service are small: the mesh does not follow the pile.</li>
-<li>The ratio installed over wished in place is a prediction: no published measurement settles
-it.</li>
-<li>One mesh and one way of carrying the stress over give one answer: repeat the run with another
-<code>handoff.size_at_pile</code> and another <code>handoff.neighbours</code>, and take the
-spread as the uncertainty of the ratio.</li>
+<li>The ratio installed over wished in place is a prediction. Its range holds the error of the
+finite elements and of the transfer; for that of the installation run the whole case with a finer
+<code>[background_mesh]</code>.</li>
 <li>The pile is rigid; with <code>[service.pile]</code> it is elastic, and starts without other
 stress than what balances the ground that was handed over.</li>
 <li>In compression and uplift the head is guided: it neither turns nor moves sideways.</li>

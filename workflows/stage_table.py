@@ -53,10 +53,22 @@ STAGES = (
         sources=(*NUMERICS, "workflows/stages/wished.py"),
     ),
     Stage(
-        "compare", "screwpile compare DIR", "compare the two", ("title", *names.SERVICE_KEYS),
+        "repeat", "screwpile repeat DIR", "repeat with a second mesh and a second transfer",
+        names.COMPARISON_KEYS,
+        reads=(names.INSTALLED, names.WISHED_SERVICE), writes=(names.REPEATED,),
+        sources=(
+            *NUMERICS, "workflows/stages/repeat.py", "workflows/comparison.py",
+            "workflows/compare.py", "workflows/continuity.py",
+        ),
+    ),
+    Stage(
+        "compare", "screwpile compare DIR", "compare the two", ("title", *names.COMPARISON_KEYS),
         reads=(names.INSTALLED, names.CERTIFICATE, names.SERVICE, names.WISHED_SERVICE),
         writes=(names.CURVES, names.WISHED_CURVES, names.SUMMARY),
-        sources=(*NUMERICS, "workflows/stages/compare.py", "workflows/compare.py"),
+        sources=(
+            *NUMERICS, "workflows/stages/compare.py", "workflows/compare.py",
+            "workflows/continuity.py", "workflows/ratio_ranges.py",
+        ),
     ),
     Stage(
         "export", "screwpile export DIR", "write views for ParaView", names.SERVICE_KEYS,
@@ -67,7 +79,7 @@ STAGES = (
         sources=("workflows/stages/export.py", "workflows/export.py"),
     ),
     Stage(
-        "report", "screwpile report DIR", "write the report", ("title", *names.SERVICE_KEYS),
+        "report", "screwpile report DIR", "write the report", ("title", *names.COMPARISON_KEYS),
         reads=(
             names.INSTALLED, names.HANDED_OFF, names.CERTIFICATE, names.SERVICE,
             names.WISHED_SERVICE, names.CURVES, names.SUMMARY,
@@ -103,14 +115,14 @@ SCREW_STAGES = (INSTALL_SCREW, EXPORT_SCREW, REPORT_SCREW)
 
 SCREW_SERVICE_STAGES = (
     INSTALL_SCREW,
-    *(stage for stage in STAGES if stage.name in ("hand_off", "serve", "wished", "compare")),
+    *STAGES[1:-2],
     replace(
         EXPORT_SCREW, keys=names.SERVICE_KEYS,
         reads=(names.INSTALLED, names.SERVICE, names.WISHED_SERVICE),
         writes=(*names.SCREW_VIEWS, names.VIEW_INSTALLED, names.VIEW_WISHED),
     ),
     replace(
-        REPORT_SCREW, keys=("title", *names.SERVICE_KEYS),
+        REPORT_SCREW, keys=("title", *names.COMPARISON_KEYS),
         reads=next(stage.reads for stage in STAGES if stage.name == "report"),
     ),
 )  # fmt: skip
@@ -118,7 +130,17 @@ SCREW_SERVICE_STAGES = (
 
 
 def stages_of(case: AnyCase) -> tuple[Stage, ...]:
-    """Return the stages of a case, in order."""
+    """Return the stages of a case, in order; only one with [comparison] has repeats."""
+    stages = _stages_of_pile(case)
+    if case.comparison is None:
+        return tuple(stage for stage in stages if stage.name != "repeat")
+    return tuple(
+        replace(stage, reads=(*stage.reads, names.REPEATED)) if stage.name == "compare" else stage
+        for stage in stages
+    )
+
+
+def _stages_of_pile(case: AnyCase) -> tuple[Stage, ...]:
     if not isinstance(case, ScrewCase):
         return STAGES
     if case.service is None:
@@ -143,6 +165,5 @@ def stage_named(name: str, case: AnyCase) -> Stage:
         if stage.name == name:
             return stage
     known = ", ".join(stage.name for stage in stages_of(case))
-    raise CaseError(
-        f"{case.title}: there is no stage {name!r} without [handoff] and [service]; it has {known}"
-    )
+    needed = "[comparison]" if name == "repeat" else "[handoff] and [service]"
+    raise CaseError(f"{case.title}: there is no stage {name!r} without {needed}; it has {known}")

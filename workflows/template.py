@@ -65,6 +65,7 @@ EXAMPLE: dict[str, Any] = {
             {"kind": "displace", "name": "compression", "displacement": "0.1 m", "step": "4 mm"},
         ]
     },
+    "comparison": {},
 }
 """What the template shows for keys without a default."""
 

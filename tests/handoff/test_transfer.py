@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from handoff.line_of_sight import Obstacle, is_hidden_by_wall
+from handoff.state_transfer import nearest_weights
 from handoff.transfer import (
     least_squares_weights,
     transfer_least_squares,
@@ -133,6 +134,8 @@ def test_nearest_point_is_the_nearest_visible_one():
     target = np.array([[0.3, -2.05]])
     assert transfer_nearest(positions, values, target)[0] == 0.0
     assert transfer_nearest(positions, values, target, PILE)[0] == 1.0
+    weights = least_squares_weights(positions, np.ones(len(positions)), target, 12, PILE)
+    assert transferred(nearest_weights(weights), values)[0] == 1.0
 
 
 def test_too_few_points_are_named():

@@ -143,6 +143,7 @@ def test_damaged_state_files_are_refused_and_nothing_is_overwritten(
         ("installed.h5", "handoff", "run `screwpile install CASE` first"),
         ("handed_off.h5", "serve", "run `screwpile handoff DIR` first"),
         ("certificate.json", "compare", "run `screwpile handoff DIR` first"),
+        ("repeated.json", "compare", "run `screwpile repeat DIR` first"),
         ("wished_in_place/service.h5", "export", "run `screwpile wished CASE` first"),
     ],
 )
@@ -249,6 +250,7 @@ def test_every_command_has_help():
         "handoff",
         "serve",
         "wished",
+        "repeat",
         "compare",
         "report",
         "check",
@@ -257,7 +259,9 @@ def test_every_command_has_help():
         assert f" {command} " in shown
 
 
-@pytest.mark.parametrize("stage", ["install", "hand_off", "serve", "wished", "compare", "export"])
+@pytest.mark.parametrize(
+    "stage", ["install", "hand_off", "serve", "wished", "repeat", "compare", "export"]
+)
 def test_every_stage_is_a_script_of_its_own(stage):
     command = [sys.executable, "-m", f"workflows.stages.{stage}", "nothing"]
     ended = subprocess.run(command, capture_output=True, text=True, check=False)

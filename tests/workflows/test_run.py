@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from workflows.case import read_case
-from workflows.directory import TIMING
+from workflows.directory import REPEATS, TIMING
 from workflows.progress import Reporter
 from workflows.runner import is_up_to_date, run_case, run_from_case, run_from_files
 from workflows.stage_table import STAGES
@@ -42,7 +42,7 @@ def test_every_promised_file_is_there(quick_results):
     found = {
         path.relative_to(quick_results).as_posix()
         for path in quick_results.rglob("*")
-        if path.is_file()
+        if path.is_file() and REPEATS not in path.relative_to(quick_results).parts
     }
     assert found == promised  # no checkpoint, nothing partial
 
@@ -106,7 +106,7 @@ def test_stages_are_skipped_when_nothing_changed(results_copy):
 
 
 def test_a_change_makes_exactly_its_stages_stale(quick_results):
-    after_service = ["serve", "wished", "compare", "export", "report"]
+    after_service = ["serve", "wished", "repeat", "compare", "export", "report"]
     assert stale(quick_results) == []
     assert stale(quick_results, "pile.half_width=500 mm") == []
     assert stale(quick_results, "service.programmes.uplift.step=10 mm") == after_service
@@ -122,6 +122,26 @@ def test_a_changed_or_missing_file_makes_its_stages_stale(results_copy):
     assert len(stale(results_copy)) == len(STAGES)
 
 
+def test_a_change_of_the_comparison_repeats_only_what_it_changes(results_copy):
+    """A ratio is that of the run, its range the largest deviation of the repeats."""
+    before = summary_of(results_copy)["results"]
+    kept = (results_copy / "repeated" / "transfer" / "service.h5").stat().st_mtime_ns
+    case, _ = read_case(QUICK, ["comparison.size_factor=1.25"])
+    run_case(case, results_copy, recording_reporter())
+    results = summary_of(results_copy)["results"]
+    assert (results_copy / "repeated" / "transfer" / "service.h5").stat().st_mtime_ns == kept
+    assert results["repeats"]["mesh"]["what"] == "finite elements 1.25 times as large"
+    assert results["repeats"]["transfer"] == before["repeats"]["transfer"]
+    assert set(results["repeats"]["mesh"]["continuity"]) == {"push_on"}
+    for name in ("compression", "uplift"):
+        ratio = results["service"][name]["ratio"]["capacity"]
+        others = [repeat["ratio"][name]["capacity"] for repeat in results["repeats"].values()]
+        assert ratio == before["service"][name]["ratio"]["capacity"]
+        assert len({ratio, *others}) == 3
+        deviation = results["service"][name]["ratio_range"]["capacity"]
+        assert deviation == max(abs(other - ratio) for other in others)
+
+
 def test_later_stages_alone_give_the_same_figures(quick_results, results_copy):
     for stage in STAGES[1:]:
         for name in stage.writes:
@@ -130,7 +150,8 @@ def test_later_stages_alone_give_the_same_figures(quick_results, results_copy):
     run_from_files("hand_off", results_copy)
     run_from_files("serve", results_copy)
     run_from_case("wished", case, results_copy)
-    run_from_files("compare", results_copy)
+    for name in ("repeat", "compare"):
+        run_from_files(name, results_copy)
     first, second = summary_of(quick_results), summary_of(results_copy)
     for summary in (first, second):
         del summary["timings_s"]
@@ -151,7 +172,7 @@ def test_without_installation_both_models_have_the_same_curves(tmp_path):
     case, _ = read_case(QUICK, ["installation.penetration=0 m"])
     for name in ("install", "wished"):
         run_from_case(name, case, tmp_path)
-    for name in ("hand_off", "serve", "compare"):
+    for name in ("hand_off", "serve", "repeat", "compare"):
         run_from_files(name, tmp_path)
     curves = {}
     with (tmp_path / "curves.csv").open(encoding="utf-8") as file:
@@ -164,4 +185,11 @@ def test_without_installation_both_models_have_the_same_curves(tmp_path):
     assert largest[1] > 1e5
     assert np.abs(installed - wished).max(axis=0)[1] <= 1e-6 * largest[1]
     assert np.abs(installed - wished).max(axis=0)[0] <= 1e-6 * largest[0]
-    assert summary_of(tmp_path)["results"]["continuity"] == {}
+    results = summary_of(tmp_path)["results"]
+    assert results["continuity"] == {}
+    for name in ("compression", "uplift"):
+        for figure, ratio in results["service"][name]["ratio"].items():
+            deviation = results["service"][name]["ratio_range"][figure]
+            assert (ratio, deviation) == (None, None) or (
+                abs(ratio - 1.0) <= 1e-6 and deviation <= 1e-6
+            )

@@ -32,9 +32,13 @@ def test_every_case_is_valid_and_its_text_reads_back(path):
 def test_a_screw_pile_has_the_stages_of_its_case():
     case, _ = read_case(QUICK)
     assert [stage.name for stage in stages_of(case)] == [
-        "install", "hand_off", "serve", "wished", "compare", "export", "report"
+        "install", "hand_off", "serve", "wished", "repeat", "compare", "export", "report"
     ]  # fmt: skip
-    alone = replace(case, handoff=None, service=None)
+    unranged = replace(case, comparison=None)
+    assert "repeat" not in [stage.name for stage in stages_of(unranged)]
+    with pytest.raises(CaseError, match=r"no stage 'repeat' without \[comparison\]"):
+        stage_named("repeat", unranged)
+    alone = replace(unranged, handoff=None, service=None)
     assert [stage.name for stage in stages_of(alone)] == ["install", "export", "report"]
     with pytest.raises(CaseError, match=r"no stage 'serve' without \[handoff\] and \[service\]"):
         stage_named("serve", alone)
@@ -78,6 +82,14 @@ REFUSED = {
         ["pile.helices=[{diameter='1 m', pitch='0.33 m', thickness='0.12 m', height='0.25 m', "
          "edges='rounded'}]"],
         r"size_at_edges 0.2 m cannot hold .* at its rounded edges.; take at most 0.12 m",
+    ),
+    "second mesh that is the first": (["comparison.size_factor=1.0"], "is no second mesh"),
+    "second transfer that is the first": (
+        ["handoff.transfer='nearest'"], "comparison.transfer is 'nearest', as handoff.transfer"
+    ),
+    "second mesh that the plate cannot hold": (
+        ["comparison.size_factor=1.5"],
+        r"\[comparison\], repeat with finite elements 1.5 times as large: handoff.size_at_pile",
     ),
     "pile deeper than the box": (["box.depth='2.4 m'"], "make box.depth at least"),
     "pitch smaller than the plate": (

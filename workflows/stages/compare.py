@@ -2,7 +2,8 @@
 
     python -m workflows.stages.compare DIR
 
-Reads the results of the other stages; writes ``curves.csv`` and ``summary.json``.
+Reads the results of the other stages, also of the repeats if the case has them; writes
+``curves.csv`` and ``summary.json``.
 """
 
 from __future__ import annotations
@@ -19,6 +20,9 @@ from workflows.directory import write_text
 from workflows.errors import DirectoryError
 from workflows.manifest import file_hash, read_manifest, software_versions
 from workflows.progress import Advance, no_progress
+from workflows.ratio_ranges import with_ranges
+from workflows.report_data import read_json
+from workflows.report_units import value_and_range
 from workflows.state_files import read_checked
 
 HASHED = (names.INSTALLED, names.HANDED_OFF, names.SERVICE, names.WISHED_SERVICE, names.CURVES)
@@ -38,6 +42,9 @@ def run(case: AnyCase, directory: Path, _advance: Advance = no_progress) -> list
     write_text(directory / names.CURVES, curves_csv([service, wished]))
     write_text(directory / names.WISHED_CURVES, curves_csv([wished]))
     results = headline(case, installed, service, wished)
+    if case.comparison is not None:
+        repeated = read_json(directory / names.REPEATED, "screwpile repeat")
+        results = with_ranges(results, repeated)
     summary = {
         "title": case.title,
         "results": results,
@@ -74,8 +81,11 @@ def _remarks(results: dict[str, dict[str, dict[str, dict[str, float]]]]) -> list
     lines = []
     for name, figures in results["service"].items():
         ratios = {key: value for key, value in figures.get("ratio", {}).items() if value}
+        found = figures.get("ratio_range", {})
         if ratios:
-            shown = ", ".join(f"{key} {value:.3f}" for key, value in ratios.items())
+            shown = ", ".join(
+                f"{key} {value_and_range(value, found.get(key))}" for key, value in ratios.items()
+            )
             lines.append(f"{name}, installed over wished in place: {shown}")
     return lines
 

@@ -87,7 +87,7 @@ def handed_over(site: Site) -> HandOver:
     )  # fmt: skip
     points, volume = installed.material_points, handed_off.integration.volume
     problem = ServiceProblem(handed_off.mesh, ground, interface)
-    chart = state_map(points, placed, problem.integration_positions, options.neighbours)
+    chart = state_map(points, placed, problem.integration_positions, options)
     transferred = transfer_state(installed, ground, placed, problem, chart)
     integral = (
         np.einsum("p,pij->ij", points.volume, cauchy_stress(points)),
