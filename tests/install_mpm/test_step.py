@@ -173,7 +173,8 @@ def test_step_without_convergence_gives_back_the_start(make_column, clay_ground,
     mesh = column.mesh
     points = column.scattered_points(rng)
     column.model = column.model._replace(
-        numerics=Numerics(tolerance=1e-12, max_iterations=3), solve=lambda values, load: 1e-6 * load
+        numerics=Numerics(tolerance=1e-12, max_iterations=3),
+        solve=lambda values, load, is_prescribed=None: 1e-6 * load,
     )
     prescribed, follow = column.squeeze(mesh, 0.02)
     result = column.step(points, mesh, prescribed, follow)
