@@ -14,7 +14,7 @@ from workflows.case import read_case
 from workflows.directory import REPEATS, TIMING
 from workflows.progress import Reporter
 from workflows.runner import is_up_to_date, run_case, run_from_case, run_from_files
-from workflows.stage_table import STAGES
+from workflows.stage_table import STAGES, stages_of
 
 pytestmark = pytest.mark.dolfinx
 
@@ -31,7 +31,7 @@ def summary_of(directory):
 
 def stale(directory, *overrides):
     case, _ = read_case(QUICK, overrides)
-    return [stage.name for stage in STAGES if not is_up_to_date(stage, case, directory)]
+    return [stage.name for stage in stages_of(case) if not is_up_to_date(stage, case, directory)]
 
 
 def test_every_promised_file_is_there(quick_results):
