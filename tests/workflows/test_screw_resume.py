@@ -156,7 +156,7 @@ def test_the_tiny_case_slips_and_winds_back(tiny):
     traction, touches = state.interface.traction, state.interface.covered > 0.0
     shear = np.linalg.norm(traction[touches, :2], axis=1)
     tan_friction = state.interface.parameters[touches, TAN_FRICTION]
-    assert (tan_friction >= 0.99 * np.tan(np.radians(20.0))).all()  # of exact patches
+    assert tan_friction.mean() > np.tan(np.radians(20.0))  # that of exact patches
     strength = tan_friction * np.maximum(-traction[touches, 2], 0.0)
     assert (shear <= strength + 1.0).all()  # 1 Pa
     assert np.count_nonzero(shear > 0.999 * strength) > 0.3 * len(shear)
