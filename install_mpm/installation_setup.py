@@ -30,7 +30,7 @@ from install_mpm.options import (
 )
 from install_mpm.pile import Pile
 from install_mpm.seeding import seed_points
-from install_mpm.state_file import InstalledState, PileState, StepControl
+from install_mpm.state_file import STEPS_BEFORE_GROWTH, InstalledState, PileState, StepControl
 
 ON_BOUNDARY = 1e-9
 """Distance in m within which a node counts as lying on a side of the box."""
@@ -159,7 +159,11 @@ def geostatic_state(
         pile=PileState(np.array(0.0), np.array(0.0), np.array(problem.pile.embedment), np.zeros(2)),
         history=empty_history(History),
         control=StepControl(
-            np.array(problem.programme.step), np.array(0), np.array(0), np.zeros_like(mesh.nodes)
+            np.array(problem.programme.step),
+            np.array(0),
+            np.array(STEPS_BEFORE_GROWTH),
+            np.array(STEPS_BEFORE_GROWTH),
+            np.zeros_like(mesh.nodes),
         ),
         case_text=case_text,
         kinematics=model.kinematics,

@@ -27,7 +27,7 @@ from install_mpm.screw_pile import ScrewPile
 from install_mpm.screw_pile_mesh import WALL_SIDES
 from install_mpm.screw_programme import Pose, ScrewProgramme, rim_radius
 from install_mpm.seeding import seed_points
-from install_mpm.state_file import InstalledState, PileState, StepControl
+from install_mpm.state_file import STEPS_BEFORE_GROWTH, InstalledState, PileState, StepControl
 
 ON_BOUNDARY = 1e-9
 """Distance in m within which a node counts as lying on a side of the box."""
@@ -149,7 +149,8 @@ def geostatic_state(
         pile=PileState(np.array(0.0), np.array(0.0), np.array(problem.pile.embedment), np.zeros(3)),
         history=empty_history(ScrewHistory),
         control=StepControl(
-            np.array(problem.programme.step), np.array(0), np.array(0), np.zeros_like(mesh.nodes)
+            np.array(problem.programme.step), np.array(0), np.array(STEPS_BEFORE_GROWTH),
+            np.array(STEPS_BEFORE_GROWTH), np.zeros_like(mesh.nodes),
         ),
         case_text=case_text,
         kinematics=Kinematics.THREE_D,

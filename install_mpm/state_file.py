@@ -33,6 +33,10 @@ class PileState(NamedTuple):
     ]
 
 
+STEPS_BEFORE_GROWTH = 4
+"""Steps that must converge after a cut before the step is doubled again, if that succeeds."""
+
+
 class StepControl(NamedTuple):
     """Step-size control and warm start: what a resumed run needs to go on bit-equal."""
 
@@ -41,6 +45,10 @@ class StepControl(NamedTuple):
     steps_since_cut: Annotated[
         np.ndarray, Field((), "", "accepted steps since the size changed", "int64")
     ]
+    steps_before_growth: Annotated[
+        np.ndarray, Field((), "", "steps to be accepted before the size grows again", "int64",
+                          default=STEPS_BEFORE_GROWTH)
+    ]  # fmt: skip
     displacement_per_step: Annotated[
         np.ndarray, Field(("node", "dim"), "m", "first trial displacement of the next step")
     ]

@@ -1,21 +1,29 @@
-"""Size of the load steps: halved when one does not converge, doubled after some that do."""
+"""Size of the load steps: halved when one does not converge, doubled after some that do.
+
+Where a doubled step fails again, twice as many steps have to converge before the next attempt: a
+way that has become harder than at its start is then not tried in vain every few steps.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from install_mpm.state_file import StepControl
+from install_mpm.state_file import STEPS_BEFORE_GROWTH, StepControl
 
-STEPS_BEFORE_GROWTH = 4
-"""Steps that must converge after a cut before the step is doubled again."""
+MOST_BEFORE_GROWTH = 64
+"""Steps after which growth is tried again in any case."""
 
 
 def cut_control(control: StepControl, advance: float) -> StepControl:
     """Return the control for a second try with half the ``advance`` in m that failed."""
+    wait = control.steps_before_growth
+    if not control.cuts and control.steps_since_cut < STEPS_BEFORE_GROWTH:  # it had just grown
+        wait = np.minimum(2 * wait, MOST_BEFORE_GROWTH)
     return control._replace(
         step=np.array(advance / 2.0),
         cuts=control.cuts + 1,
         steps_since_cut=np.array(0),
+        steps_before_growth=np.array(wait),
         displacement_per_step=control.displacement_per_step * (advance / 2.0 / control.step),
     )
 
@@ -31,9 +39,11 @@ def accepted_control(
     size, trial = control.step, control.displacement_per_step
     if advance:
         trial = displacement * (float(size) / advance)
-    steps_since_cut = control.steps_since_cut + 1
-    if steps_since_cut >= STEPS_BEFORE_GROWTH and size < largest:
+    steps_since_cut, wait = control.steps_since_cut + 1, control.steps_before_growth
+    if size >= largest and steps_since_cut >= STEPS_BEFORE_GROWTH:
+        wait = np.array(STEPS_BEFORE_GROWTH)
+    if steps_since_cut >= wait and size < largest:
         grown = np.minimum(2.0 * size, largest)
         trial, size = trial * (grown / size), grown
         steps_since_cut = np.array(0)
-    return StepControl(np.array(size), np.array(0), steps_since_cut, trial)
+    return StepControl(np.array(size), np.array(0), steps_since_cut, wait, trial)

@@ -60,7 +60,7 @@ def state(make_grid, clay_ground):
         pile=PileState(np.array(0.02), np.array(0.0), np.array(2.02), np.array([0.0, 3e3])),
         history=history,
         control=StepControl(
-            np.array(0.02), np.array(0), np.array(2), np.full(mesh.nodes.shape, 1e-3)
+            np.array(0.02), np.array(0), np.array(2), np.array(8), np.full(mesh.nodes.shape, 1e-3)
         ),
         case_text=CASE_TEXT,
         kinematics=Kinematics.PLANE_STRAIN,
