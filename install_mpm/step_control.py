@@ -33,8 +33,9 @@ def accepted_control(
 ) -> StepControl:
     """Return the control after a step of ``advance`` (m) that converged.
 
-    ``displacement`` (n_nodes, dim) in m becomes the first trial of the next step, scaled to its
-    size, which is at most ``largest`` in m.
+    ``displacement`` (n_nodes, dim) in m becomes the first trial of the next step, whose size is at
+    most ``largest`` in m.  If the size grows, it is taken as it is: twice a displacement of
+    incompressible soil is not one, by the square of its gradient, and soil is stiff in volume.
     """
     size, trial = control.step, control.displacement_per_step
     if advance:
@@ -43,7 +44,5 @@ def accepted_control(
     if size >= largest and steps_since_cut >= STEPS_BEFORE_GROWTH:
         wait = np.array(STEPS_BEFORE_GROWTH)
     if steps_since_cut >= wait and size < largest:
-        grown = np.minimum(2.0 * size, largest)
-        trial, size = trial * (grown / size), grown
-        steps_since_cut = np.array(0)
+        size, steps_since_cut = np.minimum(2.0 * size, largest), np.array(0)
     return StepControl(np.array(size), np.array(0), steps_since_cut, wait, trial)
