@@ -81,7 +81,7 @@ class Numerics:
     """Of a displacement component in an iteration, over the size of the cells; None: no limit."""
     second_start: bool = False
     """Begin a step again from rest once a correction of its first trial, the last displacement,
-    increases the residual.
+    increases the residual even when it is halved twice.
     """
     most_points_per_cell: Annotated[int, Ge(3)] = 48
     """Material points are merged in cells that hold more."""
