@@ -27,7 +27,7 @@ BACKTRACKS = 6
 BACKTRACKS_BEFORE_GIVING_UP = 2
 """Halvings after which an iteration that may give up does so.
 
-Where Newton's method goes to and fro, one halving brings it on; a trial far from equilibrium does
+Where Newton's method goes back and forth, one halving brings it on; a trial far from equilibrium does
 not get better in any number of them.
 """
 
