@@ -27,8 +27,8 @@ BACKTRACKS = 6
 BACKTRACKS_BEFORE_GIVING_UP = 2
 """Halvings after which an iteration that may give up does so.
 
-Where Newton's method goes back and forth, one halving brings it on; a trial far from equilibrium does
-not get better in any number of them.
+Where Newton's method goes back and forth, one halving brings it on; a trial far from equilibrium
+does not get better in any number of them.
 """
 
 GROWTH_ALLOWED = 1.0
