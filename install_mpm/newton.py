@@ -24,6 +24,13 @@ from install_mpm.timing import measured
 BACKTRACKS = 6
 """Halvings of a Newton step before the iteration goes on with the best trial found."""
 
+BACKTRACKS_BEFORE_GIVING_UP = 2
+"""Halvings after which an iteration that may give up does so.
+
+Where Newton's method goes back and forth, one halving brings it on; a trial far from equilibrium
+does not get better in any number of them.
+"""
+
 GROWTH_ALLOWED = 1.0
 """A full step is taken while the residual does not grow beyond this factor."""
 
@@ -78,14 +85,15 @@ def solve_newton(
     Convergence means |residual| <= tolerance * reference, and that resultants balance to the same
     tolerance; at least one correction is always made, unless the start is exact to round-off.  No
     dof is corrected by more than ``largest_correction``, one number or (n_dofs,), in an iteration.
-    If it ``gives_up``, the iteration ends with the first correction that increases the residual;
-    nothing is halved.
+    If it ``gives_up``, the iteration ends with the first correction that increases the residual
+    even after ``BACKTRACKS_BEFORE_GIVING_UP`` halvings.
     """
     x = start
     state = evaluate(x)
     if not state.is_admissible:
         return NewtonResult(x, False, np.array([np.inf]))
     residuals = [_relative(state)]
+    halvings = BACKTRACKS_BEFORE_GIVING_UP if gives_up else BACKTRACKS
     for iteration in range(max_iterations):
         small_enough = tolerance if iteration else ROUND_OFF
         if residuals[-1] <= small_enough and state.mismatch <= tolerance:
@@ -96,7 +104,7 @@ def solve_newton(
         except SingularMatrixError:
             return NewtonResult(x, False, np.array(residuals), state.mismatch)
         correction = np.clip(correction, -largest_correction, largest_correction)
-        x, state = _backtrack(evaluate, x, correction, state, 0 if gives_up else BACKTRACKS)
+        x, state = _backtrack(evaluate, x, correction, state, halvings)
         if not state.is_admissible:
             break
         residuals.append(_relative(state))
@@ -132,8 +140,6 @@ def _backtrack(
         if best is None or residual < best[0]:
             best = (residual, trial, state)
     assert best is not None  # the loop above runs at least once
-    if halvings == 0:
-        return best[1:]
     return best[1], evaluate(best[1])  # what an evaluation leaves behind has to be of this trial
 
 

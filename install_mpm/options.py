@@ -76,12 +76,12 @@ class Numerics:
     soft_stiffness: Annotated[float, Ge(0)] = 1e-2
     """Stiffness, of a step only, of partly filled cells over Young's modulus and missing share."""
     open_stiffness: Annotated[float, Ge(0)] = 0.0
-    """Stiffness, of a step only, of soil that has opened at its apex over Young's modulus."""
+    """Stiffness, of a step only, of sand that has opened or may open over Young's modulus."""
     largest_correction: Annotated[float | None, Gt(0)] = None
     """Of a displacement component in an iteration, over the size of the cells; None: no limit."""
     second_start: bool = False
     """Begin a step again from rest once a correction of its first trial, the last displacement,
-    increases the residual.
+    increases the residual even when it is halved twice.
     """
     most_points_per_cell: Annotated[int, Ge(3)] = 48
     """Material points are merged in cells that hold more."""

@@ -7,7 +7,7 @@ import numpy as np
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.constitutive.dispatch import Materials, Model, state_columns
 from install_mpm.constitutive.elastic import BULK, SHEAR
-from install_mpm.constitutive.pressure_elasticity import bulk_modulus
+from install_mpm.constitutive.pressure_elasticity import bulk_modulus, volumetric_strain
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation
 from install_mpm.hanging_soil import cells_around_hanging_soil
@@ -22,6 +22,13 @@ PRESSURE_DEPENDENT = (Model.MODIFIED_CAM_CLAY, Model.CRITICAL_STATE_SAND)
 
 REFERENCE_PRESSURE = 50e3
 """Pressure in Pa, that in a few metres of depth, at which their stiffness scales soft terms."""
+
+OPENING_PRESSURE = 10e3
+"""Mean pressure in Pa under which sand may open in a step, and is held by ``open_stiffness``.
+
+Behind the trailing edge of a screw pile sand opens in the step in which it comes there: what had
+opened before is elsewhere.  There the pressure is below this.
+"""
 
 SHEAR_OVER_BULK = 0.5
 """Shear over bulk modulus there: a Poisson's ratio of 0.29."""
@@ -40,7 +47,7 @@ def youngs_modulus(materials: Materials) -> np.ndarray:
 def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisation) -> CellOptions:
     """Return the stiffnesses of this step only: volumetric term, and softly held cells.
 
-    These are cells that soil does not fill, and those in which it has opened.
+    These are cells that soil does not fill, and those in which it has opened or may open.
     """
     n_cells, n_per_cell = len(fill.cell_volume), np.diff(points.cell_start)
     first = np.minimum(points.cell_start[:-1], len(points.material) - 1)
@@ -58,23 +65,35 @@ def cell_options(fill: CellFill, points: IntegrationPoints, model: Discretisatio
         * modulus
         * (
             model.numerics.soft_stiffness * missing
-            + model.numerics.open_stiffness * open_share(points, model.materials)
+            + model.numerics.open_stiffness * opening_share(points, model.materials)
         )
         * fill.cell_volume
         / np.maximum(n_per_cell, 1),
     )
 
 
-def open_share(points: IntegrationPoints, materials: Materials) -> np.ndarray:
-    """Return the share of the integration points of each cell that have opened, (n_cells,)."""
-    is_open = np.zeros(len(points.material), dtype=bool)
-    for row, column in enumerate(state_columns(materials, "opening")):
-        if column >= 0:
-            is_open |= (points.material == row) & (points.state_variables[:, column] > 0.0)
+def opening_share(points: IntegrationPoints, materials: Materials) -> np.ndarray:
+    """Return how much of each cell has opened or may open in the step, (n_cells,), 0 to 1.
+
+    An integration point of sand counts with the part that it lacks of the elastic volumetric strain
+    under ``OPENING_PRESSURE``; where it carries no pressure it counts in full.
+    """
+    firm = volumetric_strain_under(OPENING_PRESSURE, materials)[points.material]
+    strain = np.trace(points.elastic_log_strain, axis1=1, axis2=2)
+    can_open = state_columns(materials, "opening")[points.material] >= 0
+    lacking = np.where(can_open, np.clip(1.0 - strain / firm, 0.0, 1.0), 0.0)
     n_per_cell = np.diff(points.cell_start)
     cell = np.repeat(np.arange(len(n_per_cell)), n_per_cell)
-    share: np.ndarray = np.bincount(cell, is_open, len(n_per_cell)) / np.maximum(n_per_cell, 1)
+    share: np.ndarray = np.bincount(cell, lacking, len(n_per_cell)) / np.maximum(n_per_cell, 1)
     return share
+
+
+def volumetric_strain_under(pressure: float, materials: Materials) -> np.ndarray:
+    """Return the elastic volumetric strain (n_materials,) of each soil under ``pressure`` in Pa."""
+    strain: np.ndarray = -pressure / materials.parameters[:, BULK]
+    for row in np.flatnonzero(np.isin(materials.model, PRESSURE_DEPENDENT)):
+        strain[row] = volumetric_strain(pressure, materials.parameters[row])
+    return strain
 
 
 def softly_held(

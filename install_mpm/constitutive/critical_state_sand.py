@@ -22,6 +22,7 @@ from __future__ import annotations
 import numpy as np
 
 from install_mpm._jit import jit
+from install_mpm.constitutive.frictional import APEX_STIFFNESS
 from install_mpm.constitutive.invariants import assemble, shear_invariant, stress_invariants
 from install_mpm.constitutive.mandel import trace
 from install_mpm.constitutive.parameters import CriticalStateSand
@@ -48,8 +49,6 @@ MAX_ITERATIONS = 100
 TOLERANCE = 1e-14
 ON_SURFACE = 1e-12
 """Excess of a stress that counts as on the cone, relative to q + M_b p."""
-APEX_STIFFNESS = 1e-7
-"""Share of the elastic tangent that keeps the matrix regular at the apex, where there is none."""
 LARGEST_STRESS_RATIO = 2.25
 """M_b never exceeds that of a friction angle of 55 degrees, more than any sand has."""
 REFERENCE_PRESSURE = 1e3
@@ -136,8 +135,10 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
         elastic, secant = _return(volumetric, sheared, parameters, shear, log_volume, slopes)
         if not np.isfinite(elastic):
             return NOT_RETURNED
-    pressure = mean_pressure(elastic, parameters)
-    assemble(trial_strain, pressure, secant, slopes, stress, tangent)
+    pressure, is_open = mean_pressure(elastic, parameters), secant == 0.0
+    assemble(trial_strain, pressure, slopes[3] if is_open else secant, slopes, stress, tangent)
+    if is_open:
+        stress[:] = 0.0
     state[OPENING] = max(volumetric, 0.0) if elastic == 0.0 else 0.0
     state[LOG_VOLUME] = log_volume - elastic - state[OPENING]
     state[SHEAR] = updated_shear_modulus(pressure, parameters, shear)

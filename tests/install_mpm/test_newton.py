@@ -191,6 +191,15 @@ def test_iteration_that_only_gets_worse_can_end_it():
     assert len(solve(problem, 0.7).residuals) == 21
 
 
+def test_iteration_that_may_end_is_halved_before_it_does():
+    problem = arctangent()
+    result = solve_newton(problem, solve_dense, np.array([2.0]), TOLERANCE, 20, gives_up=True)
+    assert result.is_converged
+    full, halved = problem.trials[1], problem.trials[2]
+    assert abs(full) > 2.0 > abs(halved)
+    np.testing.assert_allclose(halved - 2.0, 0.5 * (full - 2.0))
+
+
 def test_last_iteration_may_converge():
     needed = len(solve(square_root(), 2.0).residuals) - 1
     assert solve(square_root(), 2.0, max_iterations=needed).is_converged

@@ -9,8 +9,9 @@ import pytest
 from install_mpm.carriers import give_state, take_state
 from install_mpm.cell_fill import cell_geometry, fill_cells
 from install_mpm.cells import CellType, reference_cell
+from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.frictional import OPENING
-from install_mpm.constitutive.parameters import CoulombInterface, MohrCoulomb
+from install_mpm.constitutive.parameters import CoulombInterface, CriticalStateSand, MohrCoulomb
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground
 from install_mpm.location import locate
@@ -18,7 +19,7 @@ from install_mpm.material_points import MaterialPoints
 from install_mpm.mesh_generation import generate_background_mesh
 from install_mpm.pile_surface import initial_interface, pile_elements
 from install_mpm.seeding import seed_points
-from install_mpm.soft_terms import cell_options, open_share
+from install_mpm.soft_terms import cell_options, opening_share, volumetric_strain_under
 from install_mpm.step import LEVEL_FILL, switch_on
 
 DENSE_SAND = MohrCoulomb(
@@ -129,32 +130,42 @@ def specific_volume(points):
     return points.state_variables[:, 0] + np.trace(points.elastic_log_strain, axis1=1, axis2=2)
 
 
-def test_open_cells_are_held_and_closed_ones_are_not(make_column, rng):
-    """The stiffness of a step: modulus times volume times share of open integration points."""
+def test_cells_that_may_open_are_held_and_firm_ones_are_not(make_column, rng):
+    """The stiffness of a step: modulus times volume times what the points lack of 10 kPa."""
     column = make_column(Ground(unit_weight=18e3, k0=0.5, soil=DENSE_SAND))
-    points = column.scattered_points(rng)
-    state = points.state_variables.copy()
-    state[points.cell < 3, OPENING] = 0.01
-    points = points._replace(state_variables=state)
-    given = give_state(points, column.mesh, column.model, column.gradient)
-    state = given.quadrature.state_variables
-    state[0, OPENING] = 0.0  # one of the three points of the first cell
-    share = open_share(given.quadrature, column.model.materials)
-    np.testing.assert_allclose(share[:3], [2 / 3, 1.0, 1.0])
+    given = give_state(column.scattered_points(rng), column.mesh, column.model, column.gradient)
+    bulk = DENSE_SAND.youngs_modulus / 3.0 / (1.0 - 2.0 * DENSE_SAND.poissons_ratio)
+    pressure = np.full(len(given.quadrature.volume), 50e3)
+    pressure[:9] = [-1e3, 0.0, 0.0, 2.5e3, 5e3, 7.5e3, 10e3, 10e3, 4e3]  # three points a cell
+    strain = -pressure[:, None, None] / (3.0 * bulk) * np.eye(3)
+    points = given.quadrature._replace(elastic_log_strain=strain)
+    share = opening_share(points, column.model.materials)
+    np.testing.assert_allclose(share[:3], [1.0, 0.5, 0.2])
     assert not share[3:].any()
     numerics = replace(column.model.numerics, open_stiffness=1e-3)
-    closed = cell_options(given.fill, given.quadrature, column.model)
-    held = cell_options(given.fill, given.quadrature, column.model._replace(numerics=numerics))
-    added = held.soft_stiffness - closed.soft_stiffness
+    free = cell_options(given.fill, points, column.model)
+    held = cell_options(given.fill, points, column.model._replace(numerics=numerics))
+    added = held.soft_stiffness - free.soft_stiffness
     youngs_modulus = 1e-3 * DENSE_SAND.youngs_modulus * share
     expected = 0.5 * youngs_modulus * given.fill.cell_volume / 3.0  # that in shear
     np.testing.assert_allclose(added, expected, rtol=1e-9, atol=1e-6)
 
 
-def test_soil_without_openings_is_never_open(make_column, clay_ground):
+def test_pressure_under_which_sand_may_open_is_that_of_its_law():
+    soils = [DENSE_SAND, CriticalStateSand(0.7, 0.92, 0.83, 0.02, 11e6)]
+    strain = np.zeros((2, 6))
+    stress, state = np.zeros((2, 6)), np.zeros((2, 3))
+    stress[:, :3], state[:, 2] = -10e3, 1e6  # the shear modulus does not matter
+    materials = dispatch.pack(soils)
+    dispatch.elastic_strain_from_stress_all(materials, np.arange(2), stress, state, strain)
+    expected = strain[:, :3].sum(axis=1)
+    np.testing.assert_allclose(volumetric_strain_under(10e3, materials), expected, rtol=1e-12)
+
+
+def test_soil_without_an_apex_never_opens(make_column, clay_ground):
     column = make_column(clay_ground)
     given = give_state(column.points(), column.mesh, column.model, column.gradient)
-    assert not open_share(given.quadrature, column.model.materials).any()
+    assert not opening_share(given.quadrature, column.model.materials).any()
 
 
 def test_openings_of_a_cell_are_shared_or_closed(make_column, rng):

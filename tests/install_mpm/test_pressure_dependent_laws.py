@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 
 from install_mpm.constitutive import dispatch, modified_cam_clay
+from install_mpm.constitutive.frictional import APEX_STIFFNESS
 from install_mpm.constitutive.parameters import (
     CriticalStateSand,
     HenckyElastic,
     ModifiedCamClay,
     MohrCoulomb,
 )
+from install_mpm.constitutive.pressure_elasticity import bulk_modulus
 from install_mpm.constitutive.state_variables import STATE_VARIABLES
 
 CLAY = ModifiedCamClay(1.2, 0.2, 0.04, 1.0, overconsolidation_ratio=1.5)
@@ -35,6 +37,9 @@ SOILS = {
 }
 SIZES = {"small": 1e-3, "moderate": 2e-2, "large": 0.5}
 """Norm of the strain increment."""
+VOLUMETRIC = np.outer([1, 1, 1, 0, 0, 0], [1, 1, 1, 0, 0, 0]) / 3.0
+DEVIATORIC = np.eye(6) - VOLUMETRIC
+"""Projections of six-vectors."""
 N_STATES = 10_000
 FEW = 500
 every_soil = pytest.mark.parametrize("name", SOILS)
@@ -251,6 +256,20 @@ def test_a_strain_that_is_not_finite_is_told(name):
         np.empty((1, 6)), np.empty((1, 6)), state.copy(), np.empty((1, 6, 6)), status,
     )  # fmt: skip
     assert status[0] == modified_cam_clay.NOT_FINITE
+
+
+def test_opened_sand_keeps_a_trace_of_its_elastic_tangent():
+    """No stress, but a matrix of full rank: far less stiff than the sand that flows beside it."""
+    soil, pressure = DENSE, 50e3
+    tensor = -pressure * np.eye(3)[None]
+    state = dispatch.initial_state(soil, np.zeros(1), tensor)
+    trial = np.array([[0.1, 0.05, 0.0, 0.02, 0.0, 0.01]])
+    opened = evaluate(soil, trial, state)
+    assert not opened.stress.any()
+    assert opened.state[0, 1] == pytest.approx(0.15)
+    row = dispatch.pack([soil]).parameters[0]
+    elastic = 3.0 * bulk_modulus(0.0, row) * VOLUMETRIC + 2.0 * state[0, 2] * DEVIATORIC
+    np.testing.assert_allclose(opened.tangent[0], APEX_STIFFNESS * elastic, rtol=1e-12, atol=1e-20)
 
 
 def compressed(soil, pressure, steps, axial, radial):
