@@ -107,15 +107,20 @@ def result_of(directory, overrides):
 
 
 def figures_of(pile, state):
-    """Return what a run found, at its end and over its steps."""
+    """Return what a run found, in its last step of full size and over its steps.
+
+    What is left for the very last step is shorter, and the volumetric term less in it.
+    """
     history = state.history
+    size = np.diff(history.travel)
+    last = int(np.flatnonzero(size > 0.99 * size.max())[-1]) + 1
     parts = part_torques(pile, state, None)
     return {
         "deviations": {part.name: part.deviation for part in parts if part.closed_form is not None},
-        "degrees": abs(float(np.degrees(history.rotation[-1]))),
-        "torque": float(history.torque[-1]),
-        "normal_torque": float(history.part_normal_torque[-1].sum()),
-        "crowd_force": float(history.crowd_force[-1]),
+        "degrees": abs(float(np.degrees(history.rotation[last]))),
+        "torque": float(history.torque[last]),
+        "normal_torque": float(history.part_normal_torque[last].sum()),
+        "crowd_force": float(history.crowd_force[last]),
         "cells": len(state.background_mesh.cell_nodes),
         "points": len(state.material_points.mass),
         "iterations": float(history.iterations[1:].mean()),
