@@ -35,19 +35,22 @@ def lateral_programmes(result: ServiceResult) -> list[str]:
 def along_pile(service: ServiceResult, wished: ServiceResult, name: str) -> Figure:
     """Return profiles at the end of a programme, and p-y curves, of both models.
 
-    Changes since the start of the programme, in the direction of the load.
+    Changes since the start of the programme, in the direction of the load.  What a pile does not
+    have, a rigid one shear force and bending moment, is left out.
     """
-    figure, axes = panels(1, len(PROFILES) + 1, 12.5, 4.0)
+    first = service.programme(name)
+    profiles = [entry for entry in PROFILES if np.isfinite(in_direction(first, entry[0])[-1]).any()]
+    figure, axes = panels(1, len(profiles) + 1, 2.5 * (len(profiles) + 1), 4.0)
     for model in (service, wished):
         entry = model.programme(name)
         along = entry.along
         assert along is not None
         colour, label = MODEL_COLOURS[model.model], MODEL_NAMES[model.model]
-        for here, (field, factor, _) in zip(axes[0], PROFILES, strict=False):
+        for here, (field, factor, _) in zip(axes[0], profiles, strict=False):
             values = factor * in_direction(entry, field)[-1]
             here.plot(values, along.height, color=colour, label=label)
         _draw_py(axes[0, -1], entry, along, colour)
-    for here, (_, _, text) in zip(axes[0], PROFILES, strict=False):
+    for here, (_, _, text) in zip(axes[0], profiles, strict=False):
         here.set(xlabel=text)
         grid(here)
     axes[0, 0].set(ylabel="z (m)")
