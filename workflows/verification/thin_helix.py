@@ -18,7 +18,7 @@ from install_mpm.equilibrium import Prescribed
 from install_mpm.ground import Ground
 from install_mpm.pile import PileMotion
 from workflows.verification.body import Body, advance, make_body
-from workflows.verification.problem import Outcome, Problem, at_most, relative
+from workflows.verification.problem import Check, Outcome, Problem, at_most, relative
 from workflows.verification.references.screw_pile import helix_resistance
 from workflows.verification.solid_meshes import Solid, extruded, grid, quadratic_mesh
 from workflows.verification.solid_surfaces import rigid_surface, surface_elements
@@ -71,19 +71,30 @@ def thin_helix(
     for pitch in (p, 0.5 * p, 2.0 * p):
         helicoid = Helicoid(0.5 * D, 0.5 * d, pitch)
         torque, force = _resistance(helicoid, alpha * su)
-        exact = helix_resistance(
-            helix_diameter=D, shaft_diameter=d, pitch=pitch, shear_strength=alpha * su
-        )
         torques.append(torque)
-        checks += [
-            relative(f"torque at the pitch {pitch:g} m in N m", torque, exact.torque, 0.03),
-            relative(f"upward force at the pitch {pitch:g} m in N", force, exact.force, 0.03),
-        ]
+        checks += closed_form_checks((D, d, pitch), alpha * su, torque, force)
     spread = max(torques) / min(torques) - 1.0
     checks.append(
         at_most("largest over smallest torque of the three pitches, less 1", spread, 0.01)
     )
     return Outcome(tuple(checks))
+
+
+def closed_form_checks(
+    size: tuple[float, float, float], strength: float, torque: float, force: float
+) -> list[Check]:
+    """Return the checks of torque in N m and upward force in N against PC1.
+
+    ``size`` is diameter, shaft diameter and pitch in m; ``strength`` the shear strength in Pa.
+    """
+    diameter, shaft, pitch = size
+    exact = helix_resistance(
+        helix_diameter=diameter, shaft_diameter=shaft, pitch=pitch, shear_strength=strength
+    )
+    return [
+        relative(f"torque at the pitch {pitch:g} m in N m", torque, exact.torque, 0.03),
+        relative(f"upward force at the pitch {pitch:g} m in N", force, exact.force, 0.03),
+    ]
 
 
 def _resistance(helicoid: Helicoid, strength: float) -> tuple[float, float]:
