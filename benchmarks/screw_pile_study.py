@@ -1,10 +1,11 @@
 """Convergence study of a screw pile: torque and crowd force against mesh, step and parameters.
 
-    python benchmarks/screw_pile_study.py -o DIR [--turns 1] [--mesh fine] [--only GROUP ...]
+    python benchmarks/screw_pile_study.py -o DIR [--turns 1] [--mesh fine] [--only NAME ...]
         [--page FILE.md] [--picture FILE.png]
 
 One run after the other, each in a folder of its own in DIR. A run that is there already is not
 repeated, and one that was interrupted goes on from its checkpoint: start the same command again.
+``--only`` takes groups ("volumetric term") and runs of them ("volumetric term 0.05 E").
 ``--mesh`` is the mesh on which everything but the mesh itself is varied; a study of a whole turn
 on the fine mesh takes some three hours of one processor, one of 15 degrees on the coarse mesh
 (``--turns 0.0417 --mesh coarse``) some minutes.
@@ -63,6 +64,9 @@ GROUPS = {
 }
 """What is varied: per group and value the keys of the case, beside those of the reference run."""
 
+NAMES = [*GROUPS, *(f"{group} {value}" for group in GROUPS for value in GROUPS[group])]
+"""What ``--only`` takes."""
+
 
 def overrides_of(mesh, turns, changes):
     """Return the overrides of a run as ``KEY=VALUE``."""
@@ -81,9 +85,9 @@ def runs(mesh, turns, only):
     """Return the runs as (group, value, folder, overrides); the reference run comes first."""
     found = [("mesh", mesh, mesh, overrides_of(mesh, turns, {}))]
     for group, values in GROUPS.items():
-        if only and group not in only:
-            continue
         for value, changes in values.items():
+            if only and not {group, f"{group} {value}"} & set(only):
+                continue
             own = value if group == "mesh" else mesh
             folder = own if group == "mesh" else f"{mesh}, {group} {value}"
             if folder != mesh:
@@ -189,7 +193,7 @@ def main():
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
     parser.add_argument("--turns", type=float, default=1.0)
     parser.add_argument("--mesh", choices=MESHES, default="fine")
-    parser.add_argument("--only", nargs="+", choices=GROUPS, metavar="GROUP")
+    parser.add_argument("--only", nargs="+", choices=NAMES, metavar="NAME")
     parser.add_argument("--page", type=Path, metavar="FILE.md")
     parser.add_argument("--picture", type=Path, metavar="FILE.png")
     options = parser.parse_args()
