@@ -23,8 +23,8 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 import numpy as np
 
 from install_mpm.state_file import read_installed_state
-from workflows.case import case_text, read_case
-from workflows.directory import INSTALLED
+from workflows.case import read_case, sections_text
+from workflows.directory import INSTALL_KEYS, INSTALLED
 from workflows.runner import run_from_case
 from workflows.screw_theory import part_torques
 
@@ -98,7 +98,7 @@ def runs(mesh, turns, only):
 def result_of(directory, overrides):
     """Return the figures of a run, which is made first if it is not there."""
     case, _ = read_case(CASE, overrides)
-    file, text = directory / RESULT, case_text(case)
+    file, text = directory / RESULT, sections_text(case, INSTALL_KEYS)
     if file.exists():
         stored = json.loads(file.read_text())
         if stored["case"] != text:
