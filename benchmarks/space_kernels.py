@@ -78,7 +78,7 @@ def main():
     seconds = {
         "force, tangent and assembly": best_seconds(lambda: system.evaluate(trial)),
         "linear solve": best_seconds(
-            lambda: system.solve(evaluation.tangent, -evaluation.residual)
+            lambda: system.solver()(evaluation.tangent, -evaluation.residual)
         ),
     }
     print(

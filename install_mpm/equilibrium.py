@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import chain, repeat
 from typing import NamedTuple
 
 import numpy as np
@@ -116,8 +117,8 @@ def _newton_from(system: StepSystem, first: np.ndarray, *, gives_up: bool = Fals
         largest = np.full(len(first), NO_LIMIT)
         largest[: system.external.size] = np.repeat(of_nodes, system.mesh.nodes.shape[1])
     return solve_newton(
-        system.evaluate, system.solve, first, numerics.tolerance, numerics.max_iterations,
-        largest, gives_up=gives_up,
+        system.evaluate, system.solver(), first, numerics.tolerance, numerics.max_iterations,
+        largest, gives_up=gives_up, patience=numerics.patience,
     )  # fmt: skip
 
 
@@ -135,7 +136,7 @@ def _elastic_solution(system: StepSystem, first: np.ndarray) -> np.ndarray:
     system.materials = soils
     if not state.is_admissible:  # a cell is crushed: the step is too long
         return first
-    return first + system.solve(state.tangent, -state.residual)
+    return first + system.solver()(state.tangent, -state.residual)
 
 
 class StepSystem:
@@ -160,8 +161,6 @@ class StepSystem:
         self.interface, self.is_prescribed = interface, prescribed.is_prescribed
         self.options = cell_options(fill, points, model)
         self.given, self.loaded = motion, loaded
-        solve: LinearSolve = partial(model.solve, is_prescribed=self.is_prescribed.ravel())
-        self.solve = solve if loaded is None else partial(solve_bordered, solve)
         is_turning = bool(motion.rotation or (loaded is not None and loaded.rotation.any()))
         self.is_swept = model.elements.is_swept if is_turning else None
         self.trial = empty_trial(points)
@@ -180,6 +179,17 @@ class StepSystem:
         is_held = np.zeros(n_nodes, dtype=bool)
         is_held[mesh.cell_nodes[self.takes_part]] = True
         self.is_free = is_held[:, None] & ~prescribed.is_prescribed
+
+    def solver(self) -> LinearSolve:
+        """Return the solver of a Newton iteration, whose first call factorises in any case."""
+        inner = chain([0.0], repeat(self.model.numerics.inner_tolerance))
+
+        def solve(tangent: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
+            return self.model.solve(
+                tangent, right_hand_side, self.is_prescribed.ravel(), next(inner)
+            )
+
+        return solve if self.loaded is None else partial(solve_bordered, solve)
 
     def evaluate(self, unknowns: np.ndarray) -> Evaluation:
         """Return residual and tangent at a trial.

@@ -26,16 +26,23 @@ class Solve(Protocol):
         values: np.ndarray,
         right_hand_side: np.ndarray,
         is_prescribed: np.ndarray | None = None,
+        inner_tolerance: float = 0.0,
     ) -> np.ndarray:
         """Return the solution.
 
-        ``is_prescribed`` (n_dofs,) tells dofs whose rows and columns are those of the identity.
+        ``is_prescribed`` (n_dofs,) tells dofs whose rows and columns are those of the identity.  If
+        the matrix is near that of the last call, a relative residual of ``inner_tolerance`` can be
+        enough, for which the factors of then may do.
         """
         ...
 
 
 LinearSolve = Callable[[Any, np.ndarray], np.ndarray]
 """Takes a tangent, bordered or not, and a right-hand side."""
+
+
+INNER_ITERATIONS = 12
+"""Of GMRES with the factors of an earlier matrix; new factors are cheaper than more of them."""
 
 
 class SingularMatrixError(ArithmeticError):
@@ -70,18 +77,23 @@ def mumps(pattern: SparsityPattern) -> Solve:
 
     The others are analysed once, as they stay the same in a run, and so is the order in which they
     are eliminated.  Dofs without soil are among them: they come and go at the ground surface in
-    most steps, and what they add to a factorisation is little beside another analysis.  A solution
-    depends on its own values, not on those of earlier calls.
+    most steps, and what they add to a factorisation is little beside another analysis.  With an
+    ``inner_tolerance`` GMRES starts from the factors of an earlier call, and the matrix is
+    factorised only if that takes more than ``INNER_ITERATIONS``; without, a solution depends on its
+    own values alone.
 
     Raises
     ------
     SingularMatrixError
         From the returned function, if a factorisation fails.
     """
-    last: tuple[np.ndarray, CoupledSystem, LinearSolve, Callable[[], None]] | None = None
+    last: tuple[np.ndarray, CoupledSystem, _SolveCoupled, Callable[[], None]] | None = None
 
     def solve(
-        values: np.ndarray, right_hand_side: np.ndarray, is_prescribed: np.ndarray | None = None
+        values: np.ndarray,
+        right_hand_side: np.ndarray,
+        is_prescribed: np.ndarray | None = None,
+        inner_tolerance: float = 0.0,
     ) -> np.ndarray:
         nonlocal last
         is_coupled = np.ones(len(right_hand_side), dtype=bool)
@@ -96,16 +108,20 @@ def mumps(pattern: SparsityPattern) -> Solve:
         result = np.array(right_hand_side)  # of rows of the identity
         if len(system.dofs):
             result[system.dofs] = solve_coupled(
-                values[system.entries], right_hand_side[system.dofs]
+                values[system.entries], right_hand_side[system.dofs], inner_tolerance
             )
         return result
 
     return solve
 
 
+_SolveCoupled = Callable[[np.ndarray, np.ndarray, float], np.ndarray]
+"""Takes values, right-hand side and inner tolerance."""
+
+
 def _mumps_of_all(
     indptr: np.ndarray, indices: np.ndarray
-) -> tuple[LinearSolve, Callable[[], None]]:
+) -> tuple[_SolveCoupled, Callable[[], None]]:
     """Return a MUMPS solver of a matrix in compressed rows, which analyses it once.
 
     The second function gives its memory back: PETSc keeps what Python has forgotten.
@@ -123,18 +139,28 @@ def _mumps_of_all(
     solver.setType("preonly")
     solver.setOperators(matrix)
     factorisation = solver.getPC()
+    iterative = _gmres(matrix, factorisation)
     factorisation.setType("lu")
     factorisation.setFactorSolverType("mumps")
     prepare = partial(_prepare_mumps, factorisation)
     prepare()
     solution, load = matrix.createVecs()
 
-    def solve(values: np.ndarray, right_hand_side: np.ndarray) -> np.ndarray:
+    def solve(
+        values: np.ndarray, right_hand_side: np.ndarray, inner_tolerance: float
+    ) -> np.ndarray:
         matrix.setValuesCSR(indptr, indices, values)
         matrix.assemble()
+        if inner_tolerance:
+            factorisation.setReusePreconditioner(True)
+            iterative.setTolerances(rtol=inner_tolerance, max_it=INNER_ITERATIONS)
+            result = _solve_columns(iterative, load, solution, right_hand_side)
+            factorisation.setReusePreconditioner(False)
+            if result is not None:
+                return result
         solver.setOperators(matrix)
         result = _solve_columns(solver, load, solution, right_hand_side)
-        if solver.getConvergedReason() < 0 or not np.isfinite(result).all():
+        if result is None:
             factorisation.reset()  # PETSc would leave out the factorisation after one that failed
             solver.setOperators(matrix)
             prepare()
@@ -142,21 +168,35 @@ def _mumps_of_all(
         return result
 
     def release() -> None:
-        for held in (solver, factorisation, matrix, solution, load):
+        for held in (iterative, solver, factorisation, matrix, solution, load):
             held.destroy()
 
     return solve, release
 
 
+def _gmres(matrix: Any, preconditioner: Any) -> Any:
+    """Return GMRES (PETSc) whose residual is that of the equations, not the preconditioned one."""
+    from petsc4py import PETSc
+
+    solver = PETSc.KSP().create(PETSc.COMM_SELF)
+    solver.setType("gmres")
+    solver.setPC(preconditioner)
+    solver.setPCSide(PETSc.PC.Side.RIGHT)
+    solver.setOperators(matrix)
+    return solver
+
+
 def _solve_columns(
     solver: Any, load: Any, solution: Any, right_hand_side: np.ndarray
-) -> np.ndarray:
-    """Return the solutions of all columns; PETSc factorises at the first of them."""
+) -> np.ndarray | None:
+    """Return the solutions of all columns, None if one fails; PETSc factorises at the first."""
     columns = []
     for column in right_hand_side.reshape(len(right_hand_side), -1).T:
         load.setArray(column)
         solver.solve(load, solution)
         columns.append(np.array(solution.getArray()))
+        if solver.getConvergedReason() < 0 or not np.isfinite(columns[-1]).all():
+            return None
     return np.stack(columns, axis=1).reshape(right_hand_side.shape)
 
 
@@ -173,7 +213,7 @@ def _prepare_mumps(factorisation: Any) -> None:
 def superlu(pattern: SparsityPattern) -> Solve:
     """Return scipy's SuperLU solver, for machines without PETSc; slow in three dimensions.
 
-    Rows of the identity cost it nothing, so it leaves none out.
+    Rows of the identity cost it nothing, so it leaves none out; and it factorises in every call.
 
     Raises
     ------
@@ -182,7 +222,10 @@ def superlu(pattern: SparsityPattern) -> Solve:
     """
 
     def solve(
-        values: np.ndarray, right_hand_side: np.ndarray, is_prescribed: np.ndarray | None = None
+        values: np.ndarray,
+        right_hand_side: np.ndarray,
+        is_prescribed: np.ndarray | None = None,
+        inner_tolerance: float = 0.0,
     ) -> np.ndarray:
         try:
             factors = splu(sparse.csc_matrix(as_matrix(pattern, values)))

@@ -79,6 +79,7 @@ def solve_newton(
     largest_correction: np.ndarray = NO_LIMIT,
     *,
     gives_up: bool = False,
+    patience: int | None = None,
 ) -> NewtonResult:
     """Return the solution of ``evaluate(x).residual = 0`` from ``start`` (n_dofs,).
 
@@ -86,7 +87,8 @@ def solve_newton(
     tolerance; at least one correction is always made, unless the start is exact to round-off.  No
     dof is corrected by more than ``largest_correction``, one number or (n_dofs,), in an iteration.
     If it ``gives_up``, the iteration ends with the first correction that increases the residual
-    even after ``BACKTRACKS_BEFORE_GIVING_UP`` halvings.
+    even after ``BACKTRACKS_BEFORE_GIVING_UP`` halvings; with ``patience``, if the residual has not
+    halved in so many iterations.
     """
     x = start
     state = evaluate(x)
@@ -109,6 +111,10 @@ def solve_newton(
             break
         residuals.append(_relative(state))
         if gives_up and residuals[-1] > GROWTH_ALLOWED * residuals[-2]:
+            break
+        if patience is not None and 2.0 * residuals[-1] > min(
+            residuals[:-patience], default=np.inf
+        ):
             break
     is_converged = state.is_admissible and max(residuals[-1], state.mismatch) <= tolerance
     return NewtonResult(x, is_converged, np.array(residuals), state.mismatch)

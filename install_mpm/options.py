@@ -69,6 +69,12 @@ class Numerics:
 
     tolerance: Annotated[float, Gt(0), Le(1e-6)] = 1e-9
     max_iterations: Annotated[int, Ge(3)] = 25
+    patience: Annotated[int, Ge(1)] | None = None
+    """Iterations in which the residual has to halve, else the step is cut; None: no such rule."""
+    inner_tolerance: Annotated[float, Ge(0), Lt(1)] = 0.0
+    """Relative residual to which GMRES solves the later linear systems of a step, with the factors
+    of its first one; 0: every one is factorised.
+    """
     max_cuts: Annotated[int, Ge(0)] = 6
     volumetric_term: Annotated[float, Ge(0)] = 0.1
     """Stiffness h_v of the volumetric term, of a step only, over Young's modulus."""

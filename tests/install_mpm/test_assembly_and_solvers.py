@@ -217,3 +217,28 @@ def test_matrix_with_nan_is_an_error(solver, system, pattern):
     values[3] = np.nan
     with pytest.raises(SingularMatrixError):
         SOLVERS[solver](pattern)(values, load)
+
+
+def test_loose_tolerance_uses_the_factors_of_the_matrix_before(system, pattern, rng):
+    """The answer is as good as asked for, better than that of the old factors alone."""
+    values, load = system
+    other = values * rng.uniform(0.98, 1.02, len(values))
+    matrix, solve = as_matrix(pattern, other), SOLVERS["mumps"](pattern)
+    old = solve(values, load)
+    result = solve(other, load, None, 1e-3)
+    assert np.linalg.norm(matrix @ result - load) <= 1e-3 * np.linalg.norm(load)
+    assert np.linalg.norm(matrix @ result - load) < np.linalg.norm(matrix @ old - load)
+    exact = solve(other, load)
+    assert not np.array_equal(result, exact)
+    np.testing.assert_array_equal(exact, SOLVERS["mumps"](pattern)(other, load))
+
+
+def test_matrix_far_from_the_one_before_is_factorised(system, pattern, rng, monkeypatch):
+    """Where GMRES takes too many iterations, the answer is the exact one, for each column."""
+    monkeypatch.setattr(linear_solvers, "INNER_ITERATIONS", 1)
+    values, load = system
+    other, loads = values * rng.uniform(0.1, 10.0, len(values)), np.stack([load, -load], axis=1)
+    solve = SOLVERS["mumps"](pattern)
+    solve(values, load)
+    expected = SOLVERS["mumps"](pattern)(other, loads)
+    np.testing.assert_array_equal(solve(other, loads, None, 1e-6), expected)

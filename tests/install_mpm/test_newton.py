@@ -200,6 +200,20 @@ def test_iteration_that_may_end_is_halved_before_it_does():
     np.testing.assert_allclose(halved - 2.0, 0.5 * (full - 2.0))
 
 
+def slow():
+    """A tangent ten times too stiff: the residual falls by a tenth in each iteration."""
+    return Problem(lambda x: x, lambda x: np.full(1, 10.0))
+
+
+def test_residual_that_does_not_halve_in_time_ends_the_iteration():
+    """0.9^6 = 0.53 and 0.9^7 = 0.48: six iterations are too few for it, seven are enough."""
+    start = np.array([1.0])
+    result = solve_newton(slow(), solve_dense, start, 1e-3, 100, patience=6)
+    assert not result.is_converged
+    np.testing.assert_allclose(result.residuals, 0.9 ** np.arange(7))
+    assert solve_newton(slow(), solve_dense, start, 1e-3, 100, patience=7).is_converged
+
+
 def test_last_iteration_may_converge():
     needed = len(solve(square_root(), 2.0).residuals) - 1
     assert solve(square_root(), 2.0, max_iterations=needed).is_converged
