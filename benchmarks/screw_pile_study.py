@@ -95,9 +95,9 @@ def runs(mesh, turns, only):
     return found
 
 
-def result_of(directory, overrides):
+def result_of(directory, overrides, case_file=CASE):
     """Return the figures of a run, which is made first if it is not there."""
-    case, _ = read_case(CASE, overrides)
+    case, _ = read_case(case_file, overrides)
     file, text = directory / RESULT, sections_text(case, INSTALL_KEYS)
     if file.exists():
         stored = json.loads(file.read_text())
@@ -120,6 +120,8 @@ def figures_of(pile, state):
     last = int(np.flatnonzero(size > 0.99 * size.max())[-1]) + 1
     parts = part_torques(pile, state, None)
     return {
+        "smallest_volume_ratio": float(history.smallest_volume_ratio.min()),
+        "largest_volume_ratio": float(history.largest_volume_ratio.max()),
         "deviations": {part.name: part.deviation for part in parts if part.closed_form is not None},
         "degrees": abs(float(np.degrees(history.rotation[last]))),
         "torque": float(history.torque[last]),

@@ -1,18 +1,18 @@
-"""The convergence study of a screw pile: its runs are valid cases, results are kept and tabled."""
+"""The studies of screw piles: their runs are valid cases, results are kept and tabled."""
 
-import importlib.util
+import importlib
 import json
+import sys
 from pathlib import Path
 
 import pytest
 
-from workflows.case import case_text, read_case
+from workflows.case import case_text, read_case, sections_text
+from workflows.directory import INSTALL_KEYS
 
-SCRIPT = Path(__file__).parents[2] / "benchmarks" / "screw_pile_study.py"
-
-specification = importlib.util.spec_from_file_location("screw_pile_study", SCRIPT)
-study = importlib.util.module_from_spec(specification)
-specification.loader.exec_module(study)
+sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))
+study = importlib.import_module("screw_pile_study")
+ratios = importlib.import_module("screw_pile_ratios")
 
 
 def test_every_run_is_a_valid_case_that_differs_from_the_others():
@@ -20,6 +20,21 @@ def test_every_run_is_a_valid_case_that_differs_from_the_others():
     texts = [case_text(read_case(study.CASE, overrides)[0]) for *_, overrides in found]
     assert len(set(texts)) == len(found) == len({folder for _, _, folder, _ in found})
     assert {group for group, *_ in found} == set(study.GROUPS)
+
+
+def test_only_one_run_of_a_group():
+    found = study.runs("fine", 1.0, ["volumetric term 0.05 E"])
+    assert [value for _, value, *_ in found] == ["fine", "0.05 E"]
+    assert set(study.NAMES) > {"step", "step 11 mm"}
+
+
+@pytest.mark.parametrize("soil", ratios.SOILS)
+def test_every_advancement_ratio_is_a_valid_case(soil):
+    for ratio in ratios.RATIOS:
+        case, _ = read_case(ratios.SOILS[soil], ratios.overrides_of(0.25, ratio))
+        (phase,) = case.installation.phases
+        assert (phase.turns, phase.advancement_ratio) == (0.25, ratio)
+        assert not case.installation.release
 
 
 @pytest.mark.parametrize("mesh", study.MESHES)
@@ -33,7 +48,7 @@ def test_only_some_groups_on_any_mesh(mesh):
 
 def test_a_result_is_not_computed_again_and_must_belong_to_the_study(tmp_path):
     _, _, _, overrides = study.runs("coarse", 0.5, None)[0]
-    text = case_text(read_case(study.CASE, overrides)[0])
+    text = sections_text(read_case(study.CASE, overrides)[0], INSTALL_KEYS)
     (tmp_path / study.RESULT).write_text(json.dumps({"case": text, "torque": 1.0}))
     assert study.result_of(tmp_path, overrides)["torque"] == 1.0
     with pytest.raises(SystemExit, match="another study"):
@@ -55,3 +70,18 @@ def test_the_table_says_how_far_a_run_is_from_the_reference():
         "| step | 11 mm | 2,000 | 7.00 | -12.5 % | 3.00 | 11.00 | +10.0 % | shaft -2.0 % "
         "| 3.0 | 25 % |"
     )
+
+
+def test_torque_and_force_of_two_soils_are_tabled_and_drawn(tmp_path):
+    result = {
+        "torque": 8e3, "normal_torque": 3e3, "crowd_force": -10e3, "iterations": 3.0,
+        "share_cut": 0.0, "smallest_volume_ratio": 0.99, "largest_volume_ratio": 1.2,
+        "rotation_history": [0.0, 45.0, 90.0], "torque_history": [0.0, 7e3, 8e3],
+        "crowd_force_history": [0.0, -8e3, -10e3],
+    }  # fmt: skip
+    rows = [("clay", 0.5, result), ("sand", 1.0, result)]
+    assert ratios.table(rows).splitlines()[-1] == (
+        "| sand | 1 | 8.00 | 3.00 | -10.0 | 3.0 | 0 % | 0.990 - 1.200 |"
+    )
+    ratios.draw(rows, tmp_path / "ratios.png")
+    assert (tmp_path / "ratios.png").stat().st_size > 10_000
