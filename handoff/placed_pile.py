@@ -12,6 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
+from handoff.facet_points import FacetPoints
 from handoff.fe_mesh import FEMesh, make_mesh
 from handoff.interface_transfer import FESurface, transferred_traction
 from handoff.line_of_sight import Obstacle, screw_obstacle
@@ -28,7 +29,7 @@ from install_mpm.screw_pile import ScrewPile, part_names
 from install_mpm.screw_programme import rim_radius
 from install_mpm.screw_record import weight_of
 from install_mpm.screw_shape import distance_to_plates
-from install_mpm.screw_shape import surface_normals as screw_normals
+from install_mpm.screw_surface import facet_normals
 from install_mpm.state_file import InstalledState
 
 
@@ -68,8 +69,8 @@ class PlacedPile(Protocol):
     ) -> FEMesh:
         """Return the mesh of the soil; see ``fe_mesh.make_mesh``."""
 
-    def normals(self, part: np.ndarray, positions: np.ndarray) -> np.ndarray:
-        """Return the exact normals (n, dim), from soil to pile, of ``part`` (n,) at places."""
+    def normals(self, facets: FacetPoints) -> np.ndarray:
+        """Return the exact normals (n_i, dim), from soil to pile, at points on ``facets``."""
 
     def obstacle(self) -> Obstacle | np.ndarray:
         """Return the pile as what hides material points."""
@@ -127,9 +128,9 @@ class PlacedFlatPile:
         """Return the mesh of triangles."""
         return make_mesh(self.pile, self.tip_depth, box, options, surface, boundaries)
 
-    def normals(self, part: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    def normals(self, facets: FacetPoints) -> np.ndarray:
         """Return the normals of the parts."""
-        return surface_normals(part)
+        return surface_normals(facets.parts)
 
     def obstacle(self) -> Obstacle:
         """Return the outline of the pile."""
@@ -201,11 +202,15 @@ class PlacedScrewPile:
         """Return the mesh of tetrahedra."""
         return make_screw_mesh(self.pile, self.rotation, box, options, surface, boundaries)
 
-    def normals(self, part: np.ndarray, positions: np.ndarray) -> np.ndarray:
-        """Return the exact normals of shaft, tip and plates."""
+    def normals(self, facets: FacetPoints) -> np.ndarray:
+        """Return the normals of shaft, tip and plates, with one at each corner of an edge."""
         turn = rotation_matrix(self.rotation, 3)
-        normals: np.ndarray = screw_normals(self.pile, part, positions @ turn) @ turn.T
-        return normals
+        normals, _ = facet_normals(
+            self.pile, facets.nodes, facets.facet_parts, facets.shape_values,
+            facets.coordinates @ turn,
+        )  # fmt: skip
+        turned: np.ndarray = normals @ turn.T
+        return turned
 
     def obstacle(self) -> np.ndarray:
         """Return the core of shaft and plates."""

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from handoff.facet_points import FacetPoints, NormalsOf
 from handoff.fe_mesh import FacetTag, FEMesh, pile_facets
 from handoff.fe_state_file import FEState
 from handoff.pile_mesh import PileMesh
@@ -19,7 +20,6 @@ from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground, GroundProfile, soils_of
 from service_fe.inclusion import Inclusion
-from service_fe.interface_forms import NormalsOf
 from service_fe.options import DeformablePile, ServiceNumerics
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held
@@ -176,8 +176,8 @@ def _joined(
     return mesh, twin, node_of_pile
 
 
-def _upward(_part: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    normals = np.zeros_like(positions)
+def _upward(facets: FacetPoints) -> np.ndarray:
+    normals = np.zeros_like(facets.positions)
     normals[:, -1] = 1.0
     return normals
 
@@ -185,9 +185,9 @@ def _upward(_part: np.ndarray, positions: np.ndarray) -> np.ndarray:
 def _with_head(normals: NormalsOf) -> NormalsOf:
     """Return the normals of the pile's surface and, upward, of the head."""
 
-    def of_all(part: np.ndarray, positions: np.ndarray) -> np.ndarray:
-        found, is_surface = _upward(part, positions), part != FacetTag.PILE_HEAD
-        found[is_surface] = normals(part[is_surface], positions[is_surface])
+    def of_all(facets: FacetPoints) -> np.ndarray:
+        found, is_surface = _upward(facets), facets.facet_parts != FacetTag.PILE_HEAD
+        found[np.repeat(is_surface, len(facets.weights))] = normals(facets.selected(is_surface))
         return found
 
     return of_all

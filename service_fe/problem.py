@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from handoff.equilibration import EquilibrationError, ReleasedState
+from handoff.facet_points import NormalsOf
 from handoff.fe_mesh import FacetTag, FEMesh
 from handoff.fe_state_file import FEState
 from handoff.geostatic import geostatic_state
@@ -25,7 +26,7 @@ from install_mpm.ground import (
 from install_mpm.pile import WHOLE_PILE
 from service_fe.coupled_solver import make_solver
 from service_fe.inclusion import Inclusion, interface_parameters, open_pattern
-from service_fe.interface_forms import InterfaceForms, NormalsOf, flat_normals
+from service_fe.interface_forms import InterfaceForms, flat_normals
 from service_fe.kinematics import FORMS
 from service_fe.load_step import LoadStep, Model, Step, Unknowns
 from service_fe.newton import StepNotConvergedError

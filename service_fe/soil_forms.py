@@ -115,14 +115,29 @@ class SoilForms:
         self._unit_weight_rows = self._quadrature_rows(self._unit_weight)
         self._stress_rows = self._quadrature_rows(self._stress)
         self._tangent_rows = self._quadrature_rows(self._tangent)
-        strain = strain_vector(self._displacement)
-        self._strain = fem.Expression(strain, points)
+        self._strain = fem.Expression(self._deformation(self._displacement), points)
         self._force_form = fem.form(ufl.dot(self._stress, strain_vector(test)) * dx)
         self._stiffness_form = fem.form(
-            ufl.dot(strain_vector(test), ufl.dot(self._tangent, strain_vector(trial))) * dx
+            ufl.dot(strain_vector(test), ufl.dot(self._tangent, self._deformation(trial))) * dx
         )
         self._weight_form = fem.form(self._unit_weight * test[self.dim - 1] * dx)
         self.matrix: PETSc.Mat = compat.make_matrix(self._stiffness_form)
+
+    def _deformation(self, displacement: Any) -> Any:
+        import os
+        strain = strain_vector(displacement)
+        if self.dim == 2 or os.environ.get("PLAIN"):
+            return strain
+        to_middle = fem.Function(
+            compat.make_quadrature_space(self.domain, (self.dim,), DEGREE)
+        )
+        corners = self.mesh.nodes[self.mesh.cell_nodes[:, : self.dim + 1]]
+        n_points = len(self.integration_positions) // len(corners)
+        middle = np.repeat(corners.mean(axis=1), n_points, axis=0)
+        off = (middle - self.integration_positions)[self.partition.own_points]
+        to_middle.x.array.reshape(-1, self.dim)[self._quadrature_rows(to_middle)] = off
+        growth = ufl.dot(to_middle, ufl.grad(ufl.div(displacement))) / 3.0
+        return strain + growth * ufl.as_vector([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 
     def _quadrature_rows(self, function: Any) -> np.ndarray:
         """Return the row in the values of ``function`` of each own integration point (n,)."""
