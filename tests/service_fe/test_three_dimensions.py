@@ -52,8 +52,8 @@ def square_pile_tags(centres):
     return tags
 
 
-def square_normals(part, positions):
-    return np.array([NORMALS[number] for number in part], dtype=float).reshape(-1, 3)
+def square_normals(facets):
+    return np.array([NORMALS[number] for number in facets.parts], dtype=float).reshape(-1, 3)
 
 
 @pytest.fixture(scope="module")

@@ -94,7 +94,7 @@ def _pushed(
         CoulombInterface(spring, spring, adhesion_factor=alpha),
         numerics=ServiceNumerics(tolerance=1e-8, max_iterations=30),
         is_fixed=is_fixed,
-        normals=lambda _part, place: -place / np.linalg.norm(place, axis=1)[:, None],
+        normals=_towards_axis,
     )
     motion = np.array([distance / steps, 0.0, 0.0])
     control = PileControl(np.zeros(3, dtype=bool), motion, np.zeros(3))
