@@ -44,6 +44,14 @@ class FacetPoints(NamedTuple):
 NormalsOf = Callable[[FacetPoints], np.ndarray]
 """Normals (n_i, dim) of the exact surface, from soil to pile, at points on facets."""
 
+ShareOf = Callable[[FacetPoints], np.ndarray]
+"""Shear strength (n_i,) of the exact surface over that of its facets, at points on them."""
+
+
+def whole_strength(facets: FacetPoints) -> np.ndarray:
+    """Return the shares (n_i,) where facets are the surface itself: one."""
+    return np.ones(len(facets.parts))
+
 
 def facet_points(mesh: FEMesh) -> FacetPoints:
     """Return the integration points on the pile's facets of a mesh; there may be none."""

@@ -79,6 +79,14 @@ class HandedOffPile(NamedTuple):
         np.ndarray,
         Field((), "N", "downward load that holds the modelled part: soil reaction less its weight"),
     ]
+    rebound_rise: Annotated[
+        np.ndarray,
+        Field((), "m", "rise of the pile while the rig let go, in the installation", default=0.0),
+    ]
+    rebound_rotation: Annotated[
+        np.ndarray,
+        Field((), "rad", "its rotation meanwhile, right-handed about +z", default=0.0),
+    ]
 
 
 class HandedOffState(NamedTuple):

@@ -23,6 +23,7 @@ from install_mpm.pile import surface_normals
 from service_fe.kinematics import width
 from service_fe.rigid_pile import rigid_motion
 
+
 def flat_normals(facets: FacetPoints) -> np.ndarray:
     """Return the normals (n_i, 2) of a flat-ended pile, those of its parts.
 
@@ -100,7 +101,7 @@ class InterfaceForms:
         normals: NormalsOf = flat_normals,
         twin: np.ndarray | None = None,
     ) -> None:
-        facets = facet_points(mesh)
+        self.facets = facets = facet_points(mesh)
         nodes, shape, weights = facets.nodes, facets.shape_values, facets.weights
         self.n_dofs, self.n_points = mesh.nodes.size, len(weights)
         self.positions, self.parts = facets.positions, facets.parts

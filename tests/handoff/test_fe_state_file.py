@@ -44,7 +44,7 @@ def handed_off() -> HandedOffState:
         interface=FEInterfacePoints(
             random.normal(size=(2, 2)), random.normal(size=(2, 2)), np.ones(2), np.arange(2)
         ),
-        pile=HandedOffPile(np.array(5.0), np.array(0.0), np.array(120e3)),
+        pile=HandedOffPile(*map(np.array, (5.0, 0.0, 120e3, 6e-3, 0.01))),
         certificate=json.dumps({"synthetic_error": {"value": 0.01}}),
         case_text='title = "small"\n',
     )

@@ -50,7 +50,7 @@ def make_problem():
     def make(mesh):
         return ServiceProblem(
             mesh, GROUND, LAW, PLACED.weight(None), kinematics=PLACED.kinematics,
-            normals=PLACED.normals,
+            normals=PLACED.normals, strength_share=PLACED.strength_share,
         )  # fmt: skip
 
     return make

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
+from handoff.facet_points import FacetPoints
 from handoff.fe_mesh import FacetTag, FEMesh
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.conventions import Unit
@@ -78,6 +79,13 @@ def _mesh(radius: float, outer_ratio: float, size: float) -> FEMesh:
     )
     tags[np.linalg.norm(vertices, axis=2).min(axis=1) > 0.999 * distance.max()] = FacetTag.SIDE
     return FEMesh(mesh.nodes, mesh.cell_nodes, facet_nodes, tags)
+
+
+def _towards_axis(facets: FacetPoints) -> np.ndarray:
+    """Return the normals (n_i, 2) of a cylinder, from soil to pile."""
+    place = facets.positions
+    towards: np.ndarray = -place / np.linalg.norm(place, axis=1)[:, None]
+    return towards
 
 
 def _pushed(
