@@ -37,7 +37,7 @@ EQUILIBRATED, RELEASED, RESUMED = "equilibrated", "released", "resumed"
 """
 
 END_OF = {Release.kind: RELEASED, Resume.kind: RESUMED}
-"""Names of the states in which programmes of these kinds end; both start from that handed over."""
+"""Names of the states in which programmes of these kinds end; both start as handed over."""
 
 
 def start_of(programme: Programme) -> str:
@@ -53,12 +53,11 @@ def contradiction(programmes: Sequence[Programme]) -> str | None:
             return f"{count} programmes are named {name!r}; give each a name of its own"
     known: set[str] = set()
     for programme in programmes:
-        if not isinstance(programme, Release | Resume):
-            if _way(programme) == 0.0:
-                return f"{programme.name!r} has no displacement; give it one"
-            wrong = _wrong_start(programme.name, programme.start, known)
-            if wrong is not None:
-                return wrong
+        if _way(programme) == 0.0:
+            return f"{programme.name!r} has no displacement; give it one"
+        wrong = _wrong_start(programme.name, start_of(programme), known)
+        if wrong is not None:
+            return wrong
         known |= {programme.name, END_OF.get(programme.kind, programme.name)}
     return None
 
@@ -175,8 +174,7 @@ def imposed_steps(
         shares = np.linspace(1.0, 0.0, programme.steps + 1)
         return _load_steps(mode, [share * start for share in shares])
     if isinstance(programme, Resume):
-        back = np.zeros(len(start)) if rebound is None else -rebound / programme.steps
-        return [ImposedStep(mode, back, start, start)] * programme.steps
+        return _way_back(programme, mode, start, rebound)
     if isinstance(programme, Load):
         end = sum(getattr(programme, name) * _unit(name) for name in COMPONENT)
         return _load_steps(mode, list(np.linspace(start, end, programme.steps + 1)))
@@ -188,6 +186,19 @@ def imposed_steps(
         return _motion_steps(mode, motion, abs(programme.rotation), programme, start)
     motion = programme.displacement * mode.measure
     return _motion_steps(mode, motion, abs(programme.displacement), programme, start)
+
+
+def _way_back(
+    programme: Resume, mode: Mode, load: np.ndarray, rebound: np.ndarray | None
+) -> list[ImposedStep]:
+    """Return the steps in which the pile, free of force and torque, undoes its ``rebound``."""
+    if rebound is None or not rebound.any():
+        return [ImposedStep(mode, np.zeros(len(load)), load, load)]
+    is_let_go = np.isin(np.arange(len(load)), [UP, TWIST])
+    free = np.where(is_let_go, 0.0, load)
+    let_go = ImposedStep(mode._replace(is_loaded=is_let_go), np.zeros(len(load)), load, free)
+    back = ImposedStep(mode, -rebound / programme.steps, free, free)
+    return [let_go, *[back] * programme.steps]
 
 
 def _load_steps(mode: Mode, loads: list[np.ndarray]) -> list[ImposedStep]:

@@ -24,13 +24,15 @@ class Release:
 
 @dataclass(frozen=True)
 class Resume:
-    """Bring the pile back to where the rig stopped driving it, before it let go, in equal steps.
+    """Bring the pile, in space, back to where the rig stopped driving it, in equal steps.
 
-    Starts from the state that was handed over; a pile in space whose rig did not let go stays.
+    It rose and turned while the rig took off crowd force and torque.  What the hand-over has left
+    of them is taken off before; a pile whose rig did not let go stays as it is.
     """
 
     name: Name = "resume"
     steps: Annotated[int, Ge(1)] = 4
+    """Of the way back."""
     kind: Literal["resume"] = "resume"
 
 

@@ -150,15 +150,20 @@ def test_first_step_is_resolved():
 
 
 def test_rig_takes_the_pile_back_to_where_it_let_go():
-    """It rose by 8 mm and turned by 0.02 rad; without a rebound it stays."""
-    rebound = np.array([0.0, 0.0, 8e-3, 0.0, 0.0, 0.02])
-    steps = imposed_steps(Resume(steps=4), np.zeros(6), rebound)
+    """It rose by 8 mm and turned by 0.02 rad; without a rebound it stays, under its load."""
+    rebound, load = np.array([0.0, 0.0, 8e-3, 0.0, 0.0, 0.02]), np.arange(6.0)
+    let_go, *steps = imposed_steps(Resume(steps=4), load, rebound)
+    control = let_go.control(0.0, 1.0)
+    np.testing.assert_array_equal(np.flatnonzero(control.is_loaded), [2, 5])
+    assert not control.load[control.is_loaded].any()
+    assert not control.motion.any()
     assert [step.size for step in steps] == pytest.approx([2e-3] * 4)
     control = steps[0].control(0.0, 1.0)
     assert not control.is_loaded.any()
     np.testing.assert_allclose(control.motion, [0.0, 0.0, -2e-3, 0.0, 0.0, -5e-3])
-    still = imposed_steps(Resume(steps=1), np.zeros(6))
-    assert not still[0].control(0.0, 1.0).motion.any()
+    (still,) = imposed_steps(Resume(), load)
+    assert not still.control(0.0, 1.0).motion.any()
+    np.testing.assert_array_equal(still.load_end, load)
 
 
 def test_release_steps_go_to_zero():

@@ -282,7 +282,10 @@ def test_programmes_in_space(problem, undisturbed):
     curve = {entry.programme.name: entry.curve for entry in result.programmes}
     scale = np.abs(curve["compression"].load).max()
     np.testing.assert_allclose(curve["release"].load[-1], np.zeros(6), atol=1e-6 * scale)
-    np.testing.assert_allclose(curve["resume"].motion, [0 * rebound, -rebound / 2, -rebound])
+    let_go, *back = np.diff(curve["resume"].motion, axis=0)
+    np.testing.assert_allclose(curve["resume"].load[1, [2, 5]], [0.0, 0.0], atol=1e-6 * scale)
+    np.testing.assert_allclose(let_go[[0, 1, 3, 4]], np.zeros(4), atol=1e-12)
+    np.testing.assert_allclose(back, [-rebound / 2, -rebound / 2], atol=1e-12)
     np.testing.assert_allclose(curve["on"].load[0], curve["resume"].load[-1], rtol=1e-9)
     np.testing.assert_allclose(curve["compression"].motion[-1], [0, 0, -4e-3, 0, 0, 0], atol=1e-12)
     lateral = curve["lateral"]
