@@ -45,7 +45,7 @@ INSTALLATIONS = {
 }
 """The way of the pile, and the same way on in the finite elements.
 
-In its first tenth of a turn the crowd force still grows by 8 % over the way on.
+The crowd force of the installation grows by 2 % over such a way, after a tenth of a turn by 8 %.
 """
 
 STEP = "11 mm"
