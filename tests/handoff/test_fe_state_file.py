@@ -108,7 +108,7 @@ def replace(name, value):
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (set_attribute("version", 99), "version 99 of screwpile-handed-off-state is not version 2"),
+        (set_attribute("version", 99), "version 99 of screwpile-handed-off-state is not version 3"),
         (set_attribute("format", "screwpile-installed-state"), "expected 'screwpile-handed-off"),
         (set_attribute("case_sha256", "0" * 64), "/case is missing or does not match"),
         (set_attribute("conventions", "other"), "other conventions"),
