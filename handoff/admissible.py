@@ -18,6 +18,7 @@ from handoff.tensor_arrays import six_vectors, tensors_of
 from install_mpm.constitutive import coulomb_interface, dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.ground import GroundProfile, soils_of, undrained_shear_strength
+from install_mpm.interface import with_strength_share
 
 AT_REST = 1e-9
 """Relative change of the stress that counts as none."""
@@ -38,11 +39,14 @@ def admissible_state(
     ground: GroundProfile,
     interface: CoulombInterface,
     interface_positions: np.ndarray,
+    strength_share: np.ndarray,
     state: FEState,
 ) -> tuple[FEState, YieldCorrections]:
     """Return the state with every stress inside its yield surface and every traction its limit.
 
-    The second value tells how many stresses were corrected, and by how much.
+    ``interface_positions`` (n_i, dim) in m are those of the tractions, ``strength_share`` (n_i,)
+    multiplies the shear strength there.  The second value tells how many stresses were corrected,
+    and by how much.
 
     Raises
     ------
@@ -57,7 +61,7 @@ def admissible_state(
         elastic_strain=_with_rows(state.elastic_strain, outside, tensors_of(strain)),
         state_variables=_with_rows(state.state_variables, outside, variables),
         interface_traction=admissible_traction(
-            ground, interface, interface_positions, state.interface_traction
+            ground, interface, interface_positions, strength_share, state.interface_traction
         ),
     )
     before = six_vectors(state.cauchy_stress[outside])
@@ -132,15 +136,22 @@ def yield_values(ground: GroundProfile, state: FEState) -> np.ndarray:
 
 
 def admissible_traction(
-    ground: GroundProfile, interface: CoulombInterface, positions: np.ndarray, traction: np.ndarray
+    ground: GroundProfile,
+    interface: CoulombInterface,
+    positions: np.ndarray,
+    strength_share: np.ndarray,
+    traction: np.ndarray,
 ) -> np.ndarray:
-    """Return the tractions (n, dim) at ``positions`` (n, dim), reduced to the slip limit."""
+    """Return the tractions (n, dim) at ``positions`` (n, dim), reduced to the slip limit.
+
+    The shear strength counts with its ``strength_share`` (n,).
+    """
     strength = undrained_shear_strength(ground, positions[:, -1])
     count, dim = traction.shape
     returned = np.empty((count, dim))
     coulomb_interface.update_all(
         np.zeros((count, dim)),
-        coulomb_interface.pack(interface, strength),
+        with_strength_share(coulomb_interface.pack(interface, strength), strength_share),
         np.ascontiguousarray(traction),
         returned,
         np.empty((count, dim, dim)),

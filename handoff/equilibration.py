@@ -75,6 +75,10 @@ class EquilibriumProblem(Protocol):
         """Unit normals (n_i, dim) of the facets, which are plane."""
 
     @property
+    def interface_strength_share(self) -> np.ndarray:
+        """Shear strength (n_i,) of the exact surface over that of the facets."""
+
+    @property
     def interface_parts(self) -> np.ndarray:
         """Part of the pile (n_i,) int64 of each interface point."""
 

@@ -14,7 +14,7 @@ from install_mpm.seal import new_state_file, open_state_file
 from install_mpm.state_file import read_header, write_header
 
 FORMAT = "screwpile-handed-off-state"
-VERSION = 2
+VERSION = 3
 
 
 class FEState(NamedTuple):
@@ -78,6 +78,14 @@ class HandedOffPile(NamedTuple):
     head_load: Annotated[
         np.ndarray,
         Field((), "N", "downward load that holds the modelled part: soil reaction less its weight"),
+    ]
+    rebound_rise: Annotated[
+        np.ndarray,
+        Field((), "m", "rise of the pile while the rig let go, in the installation"),
+    ]
+    rebound_rotation: Annotated[
+        np.ndarray,
+        Field((), "rad", "its rotation meanwhile, right-handed about +z"),
     ]
 
 

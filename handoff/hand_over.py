@@ -68,8 +68,8 @@ def hand_over(
     raw = transfer_state(installed, ground, placed, problem, chart)
 
     observe("admissibility")
-    places = problem.interface_positions
-    transferred, corrections = admissible_state(ground, interface, places, raw)
+    places, share = problem.interface_positions, problem.interface_strength_share
+    transferred, corrections = admissible_state(ground, interface, places, share, raw)
 
     observe("equilibration")
     balanced, report = equilibrate(problem, transferred, options)
@@ -107,7 +107,7 @@ def wished_in_place(
     EquilibrationError
         If what the slip limit takes away cannot be brought to equilibrium.
     """
-    places = problem.interface_positions
+    places, share = problem.interface_positions, problem.interface_strength_share
     undisturbed = geostatic_state(
         ground,
         problem.integration_positions,
@@ -115,7 +115,7 @@ def wished_in_place(
         problem.interface_normals,
         problem.interface_facet_normals,
     )
-    state, _ = admissible_state(ground, interface, places, undisturbed)
+    state, _ = admissible_state(ground, interface, places, share, undisturbed)
     return equilibrate(problem, state, options)[0]
 
 
@@ -138,6 +138,7 @@ def _handed_off(evidence: Evidence, mesh: FEMesh, certificate: Certificate) -> H
             np.array(placed.tip_depth),
             np.array(evidence.installed.pile.rotation),
             np.array(head_load),
+            *(np.array(part) for part in placed.rebound(evidence.installed)),
         ),
         certificate=as_json(certificate),
         case_text=evidence.installed.case_text,

@@ -12,6 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
+from handoff.facet_points import FacetPoints, whole_strength
 from handoff.fe_mesh import FEMesh, make_mesh
 from handoff.interface_transfer import FESurface, transferred_traction
 from handoff.line_of_sight import Obstacle, screw_obstacle
@@ -21,14 +22,16 @@ from handoff.surface import SurfaceProfile
 from handoff.surface_transfer import traction_on_surface
 from handoff.synthetic import airy_stress, distance_to_pile, rim_stress
 from install_mpm.conventions import Kinematics, rotation_matrix
+from install_mpm.exact_patches import strength_shares
 from install_mpm.ground import GroundProfile
 from install_mpm.options import Box
 from install_mpm.pile import Pile, PilePart, buried_weight, surface_normals
+from install_mpm.screw_history import driven
 from install_mpm.screw_pile import ScrewPile, part_names
 from install_mpm.screw_programme import rim_radius
 from install_mpm.screw_record import weight_of
 from install_mpm.screw_shape import distance_to_plates
-from install_mpm.screw_shape import surface_normals as screw_normals
+from install_mpm.screw_surface import facet_normals
 from install_mpm.state_file import InstalledState
 
 
@@ -68,8 +71,11 @@ class PlacedPile(Protocol):
     ) -> FEMesh:
         """Return the mesh of the soil; see ``fe_mesh.make_mesh``."""
 
-    def normals(self, part: np.ndarray, positions: np.ndarray) -> np.ndarray:
-        """Return the exact normals (n, dim), from soil to pile, of ``part`` (n,) at places."""
+    def normals(self, facets: FacetPoints) -> np.ndarray:
+        """Return the exact normals (n_i, dim), from soil to pile, at points on ``facets``."""
+
+    def strength_share(self, facets: FacetPoints) -> np.ndarray:
+        """Return the shear strength (n_i,) of the exact surface over that of its ``facets``."""
 
     def obstacle(self) -> Obstacle | np.ndarray:
         """Return the pile as what hides material points."""
@@ -84,6 +90,9 @@ class PlacedPile(Protocol):
         self, ground: GroundProfile, installed: InstalledState, surface: FESurface
     ) -> np.ndarray:
         """Return the installed tractions (n_i, dim) in Pa at the points of ``surface``."""
+
+    def rebound(self, installed: InstalledState) -> tuple[float, float]:
+        """Return by how much (m, rad) the pile rose and turned while the rig let go of it."""
 
     def weight(self, water_table: float | None) -> float:
         """Return the weight in N of the modelled part of the pile below the ground surface."""
@@ -127,9 +136,13 @@ class PlacedFlatPile:
         """Return the mesh of triangles."""
         return make_mesh(self.pile, self.tip_depth, box, options, surface, boundaries)
 
-    def normals(self, part: np.ndarray, positions: np.ndarray) -> np.ndarray:
+    def normals(self, facets: FacetPoints) -> np.ndarray:
         """Return the normals of the parts."""
-        return surface_normals(part)
+        return surface_normals(facets.parts)
+
+    def strength_share(self, facets: FacetPoints) -> np.ndarray:
+        """Return one: the facets are the surface."""
+        return whole_strength(facets)
 
     def obstacle(self) -> Obstacle:
         """Return the outline of the pile."""
@@ -150,6 +163,10 @@ class PlacedFlatPile:
         return transferred_traction(
             ground, installed.interface, surface.positions, surface.areas, surface.parts
         )
+
+    def rebound(self, installed: InstalledState) -> tuple[float, float]:
+        """Return zero: the rig still holds the pile."""
+        return 0.0, 0.0
 
     def weight(self, water_table: float | None) -> float:
         """Return the weight of half of the wall, or of the round pile."""
@@ -201,11 +218,17 @@ class PlacedScrewPile:
         """Return the mesh of tetrahedra."""
         return make_screw_mesh(self.pile, self.rotation, box, options, surface, boundaries)
 
-    def normals(self, part: np.ndarray, positions: np.ndarray) -> np.ndarray:
-        """Return the exact normals of shaft, tip and plates."""
+    def normals(self, facets: FacetPoints) -> np.ndarray:
+        """Return the normals of shaft, tip and plates, with one at each corner of an edge."""
         turn = rotation_matrix(self.rotation, 3)
-        normals: np.ndarray = screw_normals(self.pile, part, positions @ turn) @ turn.T
-        return normals
+        normals, _ = facet_normals(self.pile, facets, facets.facet_parts, facets.coordinates @ turn)
+        turned: np.ndarray = normals @ turn.T
+        return turned
+
+    def strength_share(self, facets: FacetPoints) -> np.ndarray:
+        """Return the strength of the patches of the exact surface, as in the installation."""
+        place = facets.coordinates @ rotation_matrix(self.rotation, 3)
+        return strength_shares(self.pile, facets, facets.facet_parts, place)
 
     def obstacle(self) -> np.ndarray:
         """Return the core of shaft and plates."""
@@ -234,6 +257,14 @@ class PlacedScrewPile:
         return traction_on_surface(
             ground, start, installed.background_mesh, installed.interface, surface
         )
+
+    def rebound(self, installed: InstalledState) -> tuple[float, float]:
+        """Return rise and rotation since the last step in which the rig drove the pile."""
+        history = driven(installed.history)
+        if not len(history.travel):
+            return 0.0, 0.0
+        rise = history.penetration[-1] - installed.pile.penetration
+        return float(rise), float(installed.pile.rotation - history.rotation[-1])
 
     def weight(self, water_table: float | None) -> float:
         """Return the weight of the pile below the surface; under water it is that of the case."""

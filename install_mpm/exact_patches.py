@@ -25,7 +25,7 @@ from functools import partial
 
 import numpy as np
 
-from install_mpm.interface import InterfaceElements
+from install_mpm.interface import Facets
 from install_mpm.screw_pile import (
     CONE,
     FLAT_TIP,
@@ -48,32 +48,32 @@ Moment = Callable[[np.ndarray], np.ndarray]
 
 
 def strength_shares(
-    pile: ScrewPile, elements: InterfaceElements, part: np.ndarray, nodes: np.ndarray
+    pile: ScrewPile, facets: Facets, part: np.ndarray, nodes: np.ndarray
 ) -> np.ndarray:
     """Return the shear strength of patches over that of their facets, at all points (n_points,).
 
     ``part`` (n_elements,) is that of each facet, ``nodes`` (n_nodes, 3) are at zero pile motion.
     """
-    vertices, share = nodes[elements.nodes[:, :3]], np.ones(len(part))
-    facet = _facet_moments(pile, elements, part, nodes)
+    vertices, share = nodes[facets.nodes[:, :3]], np.ones(len(part))
+    facet = _facet_moments(pile, facets, part, nodes)
     for numbers, moment in _moments_of_parts(pile):
         here = np.isin(part, numbers)
         share[here] = moment(vertices[here]) / facet[here]
-    return np.repeat(share, len(elements.weights))
+    return np.repeat(share, len(facets.weights))
 
 
 def _facet_moments(
-    pile: ScrewPile, elements: InterfaceElements, part: np.ndarray, nodes: np.ndarray
+    pile: ScrewPile, facets: Facets, part: np.ndarray, nodes: np.ndarray
 ) -> np.ndarray:
     """Return the moment (n_elements,) in m^3 of a unit traction around the axis along facets."""
-    corners, n_points = nodes[elements.nodes], len(elements.weights)
-    position = np.einsum("qa,eai->eqi", elements.shape_values, corners).reshape(-1, 3)
+    corners, n_points = nodes[facets.nodes], len(facets.weights)
+    position = np.einsum("qa,eai->eqi", facets.shape_values, corners).reshape(-1, 3)
     normal = surface_normals(pile, np.repeat(part, n_points), position)
     radius = np.linalg.norm(position[:, :2], axis=1)
     climb = (normal[:, 1] * position[:, 0] - normal[:, 0] * position[:, 1]) / radius
     lever = (radius * np.sqrt(1.0 - climb**2)).reshape(-1, n_points)
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    moment: np.ndarray = np.linalg.norm(across, axis=1) / 2.0 * (lever @ elements.weights)
+    moment: np.ndarray = np.linalg.norm(across, axis=1) / 2.0 * (lever @ facets.weights)
     return moment
 
 

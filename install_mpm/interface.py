@@ -7,12 +7,13 @@ the point.
 
 from __future__ import annotations
 
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
 import numpy as np
 
 from install_mpm.cells import CellType, reference_cell, shape_functions
 from install_mpm.constitutive import coulomb_interface
+from install_mpm.constitutive.coulomb_interface import COHESION, TAN_FRICTION
 from install_mpm.conventions import rotation_matrix
 from install_mpm.record import Field
 
@@ -37,6 +38,22 @@ class InterfaceElements(NamedTuple):
     On a cylinder, a cone or a helicoid the normal is that of the place where the *soil* is, on any
     other surface it turns with the pile.
     """
+
+
+class Facets(Protocol):
+    """Facets on a pile and the rule on them, in any of the stages."""
+
+    @property
+    def nodes(self) -> np.ndarray:
+        """Nodes of each facet on the soil side, vertices first, (n, n_facet_nodes)."""
+
+    @property
+    def shape_values(self) -> np.ndarray:
+        """Shape functions of a facet at its points, (n_facet_points, n_facet_nodes)."""
+
+    @property
+    def weights(self) -> np.ndarray:
+        """Weights of the rule on a facet of unit size, (n_facet_points,)."""
 
 
 class InterfacePoints(NamedTuple):
@@ -120,6 +137,16 @@ def no_interface(dim: int) -> tuple[InterfaceElements, InterfacePoints]:
         np.zeros(0),
     )
     return elements, points
+
+
+def with_strength_share(parameters: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """Return packed ``parameters`` (n, 7) with the shear strength times ``share`` (n,).
+
+    By the share facets stand for the exact surface, see ``exact_patches``.
+    """
+    scaled = parameters.copy()
+    scaled[:, [COHESION, TAN_FRICTION]] *= share[:, None]
+    return scaled
 
 
 def frames(normals: np.ndarray, rotation: float) -> np.ndarray:

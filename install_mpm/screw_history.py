@@ -145,3 +145,9 @@ class ScrewHistory(NamedTuple):
         np.ndarray,
         Field(("load_step", "iteration"), "", "relative residuals, NaN-padded", may_be_nan=True),
     ]
+
+
+def driven(history: ScrewHistory) -> ScrewHistory:
+    """Return the history of the steps in which the rig drove the pile, before it let go."""
+    is_driven = history.release_share == 0.0
+    return ScrewHistory(*(values[is_driven] for values in history))

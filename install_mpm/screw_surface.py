@@ -10,11 +10,17 @@ from install_mpm.background_mesh import (
     facets_opposite_vertices,
 )
 from install_mpm.constitutive import coulomb_interface
-from install_mpm.constitutive.coulomb_interface import COHESION, TAN_FRICTION
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import rotation_matrix
 from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
-from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule, local_axes
+from install_mpm.interface import (
+    Facets,
+    InterfaceElements,
+    InterfacePoints,
+    facet_rule,
+    local_axes,
+    with_strength_share,
+)
 from install_mpm.screw_pile import (
     LOWER_FACE,
     PARTS_OF_PILE,
@@ -45,7 +51,7 @@ def pile_elements(
     vertices = facets_opposite_vertices(mesh.cell_nodes[:, :4])[cell, facet]
     nodes = np.hstack([vertices, facet_edge_nodes(mesh, cell, facet)])
     elements = InterfaceElements(nodes, cell, *facet_rule(6, 3))
-    normals, has_corner = _normals(pile, elements, part, mesh.reference_nodes)
+    normals, has_corner = facet_normals(pile, elements, part, mesh.reference_nodes)
     is_swept = ~has_corner & ~np.isin(part, edge_parts(pile))
     return elements._replace(is_swept=np.repeat(is_swept, 3)), part, normals
 
@@ -86,28 +92,29 @@ def _of_own_face(
     return part
 
 
-def _normals(
-    pile: ScrewPile, elements: InterfaceElements, part: np.ndarray, nodes: np.ndarray
+def facet_normals(
+    pile: ScrewPile, facets: Facets, part: np.ndarray, nodes: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the normals (n_points, 3) of the interface points, and which elements have a corner.
+    """Return the normals (n_points, 3) at points on facets, and which facets (n,) have a corner.
 
-    Normals are exact, but one at each corner.
+    Normals are exact, but one at each corner.  ``part`` (n,) is that of each facet, ``nodes``
+    (n_nodes, 3) in m are in the pile frame.
 
     A vertex that edge and face, or edge and rim, of a plate share has their mean normal.  With the
     normals of both it could not move at all against the pile, and would drag the soil ahead of it
     along.  In the facets beside such a corner the normal changes linearly.
     """
-    vertices = elements.nodes[:, :3]
+    shape_values, vertices = facets.shape_values, facets.nodes[:, :3]
     own = surface_normals(pile, np.repeat(part, 3), nodes[vertices].reshape(-1, 3))
     at_corner, is_corner = _corner_normals(pile, vertices, part, own.reshape(-1, 3, 3), len(nodes))
-    position = np.einsum("qa,eai->eqi", elements.shape_values, nodes[elements.nodes])
-    exact = surface_normals(pile, np.repeat(part, 3), position.reshape(-1, 3)).reshape(-1, 3, 3)
-    share = _vertex_shares()
+    position = np.einsum("qa,eai->eqi", shape_values, nodes[facets.nodes])
+    exact = surface_normals(pile, np.repeat(part, len(shape_values)), position.reshape(-1, 3))
+    share = _vertex_shares(shape_values)
     is_plate = part >= len(PARTS_OF_PILE)
     shared = is_corner[vertices] & is_plate[:, None]  # (n_elements, 3 vertices)
     weight = np.einsum("qv,ev->eq", share, shared)
     blended = np.einsum("qv,ev,evi->eqi", share, shared, at_corner[vertices])
-    blended += (1.0 - weight)[:, :, None] * exact
+    blended += (1.0 - weight)[:, :, None] * exact.reshape(position.shape)
     normals = (blended / np.linalg.norm(blended, axis=2)[:, :, None]).reshape(-1, 3)
     return normals, shared.any(axis=1)
 
@@ -133,13 +140,11 @@ def _corner_normals(
     return total / np.where(length > 0.0, length, 1.0)[:, None], is_corner
 
 
-def _vertex_shares() -> np.ndarray:
-    """Return the linear functions (3, 3) of the vertices at the points of the rule on a facet."""
-    corners, _ = facet_rule(6, 3)
+def _vertex_shares(shape_values: np.ndarray) -> np.ndarray:
+    """Return the linear functions (n_facet_points, 3) of the vertices at points on a facet."""
+    mid_sides = shape_values[:, 3:]
     # a quadratic shape function l (2 l - 1) plus half of its two neighbours 4 l m and 4 l n is l
-    shares: np.ndarray = (
-        corners[:, :3] + (corners[:, 3:] + np.roll(corners[:, 3:], 1, axis=1)) / 2.0
-    )
+    shares: np.ndarray = shape_values[:, :3] + (mid_sides + np.roll(mid_sides, 1, axis=1)) / 2.0
     return shares
 
 
@@ -211,6 +216,5 @@ def _parameters(
     law: CoulombInterface, ground: GroundProfile, height: np.ndarray, share: np.ndarray
 ) -> np.ndarray:
     """Return the packed parameters (n, 7) at ``height`` (n,) in m; ``share`` (n,) of strength."""
-    parameters = coulomb_interface.pack(law, undrained_shear_strength(ground, height))
-    parameters[:, [COHESION, TAN_FRICTION]] *= share[:, None]
-    return parameters
+    strength = undrained_shear_strength(ground, height)
+    return with_strength_share(coulomb_interface.pack(law, strength), share)

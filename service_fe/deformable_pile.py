@@ -8,10 +8,12 @@ thickness; the motion and the load of the cap are those that a programme imposes
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
+from handoff.facet_points import FacetPoints, NormalsOf, ShareOf, whole_strength
 from handoff.fe_mesh import FacetTag, FEMesh, pile_facets
 from handoff.fe_state_file import FEState
 from handoff.pile_mesh import PileMesh
@@ -19,7 +21,6 @@ from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground, GroundProfile, soils_of
 from service_fe.inclusion import Inclusion
-from service_fe.interface_forms import NormalsOf
 from service_fe.options import DeformablePile, ServiceNumerics
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held
@@ -30,6 +31,8 @@ CAP_STIFFNESS = 100.0
 It gives way as a hundredth of a head's width of pile; a stiffer one would lift the round-off of the
 forces above the tolerance of Newton's method.
 """
+
+OnFacets = Callable[[FacetPoints], np.ndarray]
 
 UNLIMITED = 1e30
 """Cohesion in Pa of the layer below the cap: it neither slips nor opens."""
@@ -104,6 +107,7 @@ def deformable_model(
     *,
     kinematics: Kinematics,
     normals: NormalsOf,
+    strength_share: ShareOf = whole_strength,
     is_fixed: np.ndarray | None = None,
     numerics: ServiceNumerics | None = None,
 ) -> DeformableModel:
@@ -139,7 +143,8 @@ def deformable_model(
         fixed[node_of_pile] |= alone.model.is_fixed
     inclusion = Inclusion(law, float(unit_weight), cap, len(pile.mesh.cell_nodes), twin)
     problem = ServiceProblem(
-        mesh, ground, interface, 0.0, numerics, fixed, kinematics, _with_head(normals), inclusion
+        mesh, ground, interface, 0.0, numerics, fixed, kinematics,
+        _with_head(normals, _upward), inclusion, _with_head(strength_share, whole_strength),
     )  # fmt: skip
     return DeformableModel(problem, alone, node_of_pile)
 
@@ -176,18 +181,18 @@ def _joined(
     return mesh, twin, node_of_pile
 
 
-def _upward(_part: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    normals = np.zeros_like(positions)
+def _upward(facets: FacetPoints) -> np.ndarray:
+    normals = np.zeros_like(facets.positions)
     normals[:, -1] = 1.0
     return normals
 
 
-def _with_head(normals: NormalsOf) -> NormalsOf:
-    """Return the normals of the pile's surface and, upward, of the head."""
+def _with_head(of_surface: OnFacets, of_head: OnFacets) -> OnFacets:
+    """Return what is found at points on facets of the pile's surface, and on those of its head."""
 
-    def of_all(part: np.ndarray, positions: np.ndarray) -> np.ndarray:
-        found, is_surface = _upward(part, positions), part != FacetTag.PILE_HEAD
-        found[is_surface] = normals(part[is_surface], positions[is_surface])
+    def of_all(facets: FacetPoints) -> np.ndarray:
+        found, is_surface = of_head(facets), facets.facet_parts != FacetTag.PILE_HEAD
+        found[np.repeat(is_surface, len(facets.weights))] = of_surface(facets.selected(is_surface))
         return found
 
     return of_all

@@ -10,39 +10,32 @@ the traction t(w) on the soil gives the forces int G^T t and the stiffness int G
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
-from handoff.fe_mesh import FEMesh, pile_facets
+from handoff.facet_points import FacetPoints, NormalsOf, facet_points
+from handoff.fe_mesh import FEMesh
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.conventions import Kinematics
 from install_mpm.interface import axes_of
 from install_mpm.pile import surface_normals
-from service_fe import compat
-from service_fe.axisymmetric_forms import quadratic_shape
 from service_fe.kinematics import width
 from service_fe.rigid_pile import rigid_motion
 
-TRIANGLE_DEGREE = 4
-"""The rule on a triangle: six points, exact for the stiffness of quadratic facets."""
 
-NormalsOf = Callable[[np.ndarray, np.ndarray], np.ndarray]
-"""Exact unit normals (n, dim), from soil to pile, of parts (n,) at positions (n, dim)."""
-
-
-def flat_normals(part: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """Return the normals (n, 2) of a flat-ended pile, those of its parts.
+def flat_normals(facets: FacetPoints) -> np.ndarray:
+    """Return the normals (n_i, 2) of a flat-ended pile, those of its parts.
 
     Raises
     ------
     ValueError
         If the pile is one in space, which has normals of its own.
     """
-    if positions.shape[1] == 3 and len(part):
+    dim, parts = facets.coordinates.shape[1], facets.parts
+    if dim == 3 and len(parts):
         raise ValueError("a pile in space has no flat normals; give those of its surface")
-    return surface_normals(part).reshape(positions.shape)
+    return surface_normals(parts).reshape(-1, dim)
 
 
 class InterfaceResponse(NamedTuple):
@@ -71,36 +64,15 @@ class InterfaceStiffness(NamedTuple):
     """K_pp (n_motions, n_motions)."""
 
 
-def edge_shape_functions(coordinate: np.ndarray) -> np.ndarray:
-    """Return the shape functions (n, 3) of a quadratic edge, ends first, at (n,) in (-1, 1)."""
-    return np.column_stack(
-        [
-            0.5 * coordinate * (coordinate - 1.0),
-            0.5 * coordinate * (coordinate + 1.0),
-            1.0 - coordinate**2,
-        ]
-    )
+def facet_geometry(mesh: FEMesh, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+    """Return sizes (n,) in m or m^2 of facets and, in space, normals (n, 3) out of the soil.
 
-
-def facet_rule(dim: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return shape functions (n, n_facet_nodes) and weights (n,), sum one, of the rule on a facet.
-
-    Three points on an edge, six on a triangle: exact for the stiffness of quadratic facets.
-    """
-    if dim == 2:
-        points, weights = np.polynomial.legendre.leggauss(3)
-        return edge_shape_functions(points), 0.5 * weights
-    points, weights = compat.quadrature_rule(TRIANGLE_DEGREE)
-    return quadratic_shape(points)[0], 2.0 * weights
-
-
-def facet_geometry(mesh: FEMesh, facets: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
-    """Return sizes (n,) in m or m^2 of ``facets`` and, in space, normals (n, 3) out of the soil.
+    ``nodes`` (n, n_facet_nodes) are those of the facets.
 
     None in the plane, where the surface of the pile is made of straight lines and the exact normals
     are those of its edges.
     """
-    corners = mesh.nodes[mesh.facet_nodes[facets, : mesh.nodes.shape[1]]]
+    corners = mesh.nodes[nodes[:, : mesh.nodes.shape[1]]]
     if corners.shape[1] == 2:
         return np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1), None
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -117,7 +89,7 @@ def _dofs_of(nodes: np.ndarray, dim: int) -> np.ndarray:
 class InterfaceForms:
     """Discrete interface on the pile's facets of a mesh; there may be none.
 
-    ``normals`` gives the exact normals of the pile's parts.  ``twin`` (node,) is the node on the
+    ``normals`` gives those of the pile's surface.  ``twin`` (node,) is the node on the
     pile's side of a node of the soil; facets whose nodes have none (-1) face a rigid pile, as all
     do without it.
     """
@@ -129,18 +101,16 @@ class InterfaceForms:
         normals: NormalsOf = flat_normals,
         twin: np.ndarray | None = None,
     ) -> None:
-        facets, dim = pile_facets(mesh), mesh.nodes.shape[1]
-        nodes = mesh.facet_nodes[facets]
-        shape, weights = facet_rule(dim)
+        self.facets = facets = facet_points(mesh)
+        nodes, shape, weights = facets.nodes, facets.shape_values, facets.weights
         self.n_dofs, self.n_points = mesh.nodes.size, len(weights)
-        self.positions = np.einsum("qa,fai->fqi", shape, mesh.nodes[nodes]).reshape(-1, dim)
-        self.parts = np.repeat(mesh.facet_tag[facets], len(weights))
-        self.normals = normals(self.parts, self.positions)
-        sizes, of_facet = facet_geometry(mesh, facets)
+        self.positions, self.parts = facets.positions, facets.parts
+        self.normals = normals(facets)
+        sizes, of_facet = facet_geometry(mesh, nodes)
         is_plane = of_facet is None
         self.facet_normals = self.normals if is_plane else np.repeat(of_facet, len(weights), axis=0)
         self.areas = np.outer(sizes, weights).ravel() * width(self.positions, kinematics)
-        self._dofs = _dofs_of(nodes, dim)
+        self._dofs = _dofs_of(nodes, mesh.nodes.shape[1])
         self._relative = self._against_rigid_pile(shape)
         if twin is not None:
             self._dofs, self._relative = self._against_twins(nodes, twin)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from handoff.fe_mesh import FEMesh
@@ -13,12 +11,16 @@ from service_fe.soil_forms import SoilForms
 
 Forms = SoilForms | AxisymmetricForms
 
-FORMS: dict[Kinematics, Callable[[FEMesh], Forms]] = {
-    Kinematics.PLANE_STRAIN: SoilForms,
-    Kinematics.AXISYMMETRIC: AxisymmetricForms,
-    Kinematics.THREE_D: SoilForms,
-}
-"""The discrete soil on a mesh; that of plane strain and of space differ in the mesh alone."""
+
+def soil_forms(mesh: FEMesh, kinematics: Kinematics, *, mean_dilatation: bool) -> Forms:
+    """Return the discrete soil on a mesh; that of plane strain and of space differ in the mesh.
+
+    ``mean_dilatation`` concerns tetrahedra alone: undrained soil puts four conditions on each, as
+    many as it has displacements of its own, but only three on a triangle, which has four.
+    """
+    if kinematics == Kinematics.AXISYMMETRIC:
+        return AxisymmetricForms(mesh)
+    return SoilForms(mesh, mean_dilatation=mean_dilatation and kinematics == Kinematics.THREE_D)
 
 
 def width(positions: np.ndarray, kinematics: Kinematics) -> np.ndarray:

@@ -10,7 +10,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from service_fe.options import Cycles, Displace, Lateral, Load, Programme, Release, Rotate
+from service_fe.options import (
+    Cycles,
+    Displace,
+    Lateral,
+    Load,
+    Programme,
+    Release,
+    Resume,
+    Rotate,
+)
 from service_fe.rigid_pile import PileControl, axial, head_frame, n_motions
 
 ALONG, ACROSS, UP, TILT_ACROSS, TILT, TWIST = range(6)
@@ -22,8 +31,18 @@ ALONG, ACROSS, UP, TILT_ACROSS, TILT, TWIST = range(6)
 COMPONENT = {"vertical": UP, "lateral": ALONG, "moment": TILT, "torque": TWIST}
 
 
-EQUILIBRATED, RELEASED = "equilibrated", "released"
-"""States that programmes start from: as handed over, and at the end of the last release."""
+EQUILIBRATED, RELEASED, RESUMED = "equilibrated", "released", "resumed"
+"""States that programmes start from: as handed over, and at the end of the last programme of kind
+"release" or "resume".
+"""
+
+END_OF = {Release.kind: RELEASED, Resume.kind: RESUMED}
+"""Names of the states in which programmes of these kinds end; both start as handed over."""
+
+
+def start_of(programme: Programme) -> str:
+    """Return the name of the state that a programme starts from."""
+    return EQUILIBRATED if isinstance(programme, Release | Resume) else programme.start
 
 
 def contradiction(programmes: Sequence[Programme]) -> str | None:
@@ -34,13 +53,12 @@ def contradiction(programmes: Sequence[Programme]) -> str | None:
             return f"{count} programmes are named {name!r}; give each a name of its own"
     known: set[str] = set()
     for programme in programmes:
-        if not isinstance(programme, Release):
-            if _way(programme) == 0.0:
-                return f"{programme.name!r} has no displacement; give it one"
-            wrong = _wrong_start(programme.name, programme.start, known)
-            if wrong is not None:
-                return wrong
-        known |= {programme.name} | ({RELEASED} if isinstance(programme, Release) else set())
+        if _way(programme) == 0.0:
+            return f"{programme.name!r} has no displacement; give it one"
+        wrong = _wrong_start(programme.name, start_of(programme), known)
+        if wrong is not None:
+            return wrong
+        known |= {programme.name, END_OF.get(programme.kind, programme.name)}
     return None
 
 
@@ -55,11 +73,12 @@ def _wrong_start(name: str, start: str, known: set[str]) -> str | None:
     """Return what is wrong with the start of a programme, None if nothing is."""
     if start == EQUILIBRATED or start in known:
         return None
-    if start == RELEASED:
-        return (
-            f"{name!r} starts from the released pile; put a programme of kind "
-            '"release" before it, or set start = "equilibrated"'
-        )
+    for kind, end in END_OF.items():
+        if start == end:
+            return (
+                f"{name!r} starts from the {end} pile; put a programme of kind "
+                f'"{kind}" before it, or set start = "equilibrated"'
+            )
     before = ", ".join(sorted({EQUILIBRATED, *known}))
     return f"{name!r} starts from {start!r}, which is not before it; use one of {before}"
 
@@ -140,10 +159,13 @@ def _unit(component: str) -> np.ndarray:
     return unit
 
 
-def imposed_steps(programme: Programme, load: np.ndarray) -> list[ImposedStep]:
+def imposed_steps(
+    programme: Programme, load: np.ndarray, rebound: np.ndarray | None = None
+) -> list[ImposedStep]:
     """Return the steps of a programme that starts at ``load`` (n_motions,) in N and N m.
 
-    The load is that of the reference point on the modelled part of the pile.
+    The load is that of the reference point on the modelled part of the pile.  ``rebound``
+    (n_motions,) in m and rad is the motion of the pile while the rig let go; None: it did not.
     """
     dim = 2 if len(load) == n_motions(2) else 3
     mode = mode_of(programme, dim)
@@ -151,6 +173,8 @@ def imposed_steps(programme: Programme, load: np.ndarray) -> list[ImposedStep]:
     if isinstance(programme, Release):
         shares = np.linspace(1.0, 0.0, programme.steps + 1)
         return _load_steps(mode, [share * start for share in shares])
+    if isinstance(programme, Resume):
+        return _way_back(programme, mode, start, rebound)
     if isinstance(programme, Load):
         end = sum(getattr(programme, name) * _unit(name) for name in COMPONENT)
         return _load_steps(mode, list(np.linspace(start, end, programme.steps + 1)))
@@ -162,6 +186,19 @@ def imposed_steps(programme: Programme, load: np.ndarray) -> list[ImposedStep]:
         return _motion_steps(mode, motion, abs(programme.rotation), programme, start)
     motion = programme.displacement * mode.measure
     return _motion_steps(mode, motion, abs(programme.displacement), programme, start)
+
+
+def _way_back(
+    programme: Resume, mode: Mode, load: np.ndarray, rebound: np.ndarray | None
+) -> list[ImposedStep]:
+    """Return the steps in which the pile, free of force and torque, undoes its ``rebound``."""
+    if rebound is None or not rebound.any():
+        return [ImposedStep(mode, np.zeros(len(load)), load, load)]
+    is_let_go = np.isin(np.arange(len(load)), [UP, TWIST])
+    free = np.where(is_let_go, 0.0, load)
+    let_go = ImposedStep(mode._replace(is_loaded=is_let_go), np.zeros(len(load)), load, free)
+    back = ImposedStep(mode, -rebound / programme.steps, free, free)
+    return [let_go, *[back] * programme.steps]
 
 
 def _load_steps(mode: Mode, loads: list[np.ndarray]) -> list[ImposedStep]:

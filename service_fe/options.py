@@ -23,6 +23,20 @@ class Release:
 
 
 @dataclass(frozen=True)
+class Resume:
+    """Bring the pile, in space, back to where the rig stopped driving it, in equal steps.
+
+    It rose and turned while the rig took off crowd force and torque.  What the hand-over has left
+    of them is taken off before; a pile whose rig did not let go stays as it is.
+    """
+
+    name: Name = "resume"
+    steps: Annotated[int, Ge(1)] = 4
+    """Of the way back."""
+    kind: Literal["resume"] = "resume"
+
+
+@dataclass(frozen=True)
 class Displace:
     """Move the pile along its axis in equal steps, guided; a positive way is downward."""
 
@@ -31,8 +45,8 @@ class Displace:
     step: Annotated[float, Unit("m"), Gt(0)]
     """Largest length of a step."""
     start: Name = "released"
-    """Start from the end of the release, from the state that was handed over ("equilibrated"), or
-    from the end of the programme of this name.
+    """Start from the end of the release, from the state that was handed over ("equilibrated"),
+    from where the rig goes on ("resumed"), or from the end of the programme of this name.
     """
     first_step_halvings: Halvings = 4
     """The first step is taken in parts: step / 2^4 twice, step / 2^3, ..., step / 2."""
@@ -115,7 +129,7 @@ class Cycles:
     kind: Literal["cycles"] = "cycles"
 
 
-Programme = Release | Displace | Lateral | Rotate | Load | Cycles
+Programme = Release | Resume | Displace | Lateral | Rotate | Load | Cycles
 """Every programme a case can name; ``kind`` tells them apart."""
 
 IN_THE_PLANE = (Release, Displace)
@@ -142,6 +156,11 @@ class ServiceNumerics:
     max_iterations: Annotated[int, Ge(3)] = 20
     max_cuts: Annotated[int, Ge(0)] = 6
     """Times a step may be halved before the run stops."""
+    mean_dilatation: bool = True
+    """In space all points of a cell have its mean change of volume: undrained clay does not lock.
+
+    Without it soil that can be compressed and stays elastic is modelled more accurately.
+    """
     damping: Annotated[float, Ge(0), Le(10)] = 0.0
     """Viscous over elastic stress with which a step that does not converge is settled; 0: never."""
     solver: Literal["mumps", "iterative"] = "mumps"

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from handoff.equilibration import EquilibrationError, ReleasedState
+from handoff.facet_points import NormalsOf, ShareOf, whole_strength
 from handoff.fe_mesh import FacetTag, FEMesh
 from handoff.fe_state_file import FEState
 from handoff.geostatic import geostatic_state
@@ -22,11 +23,12 @@ from install_mpm.ground import (
     undrained_shear_strength,
     unit_weights,
 )
+from install_mpm.interface import with_strength_share
 from install_mpm.pile import WHOLE_PILE
 from service_fe.coupled_solver import make_solver
 from service_fe.inclusion import Inclusion, interface_parameters, open_pattern
-from service_fe.interface_forms import InterfaceForms, NormalsOf, flat_normals
-from service_fe.kinematics import FORMS
+from service_fe.interface_forms import InterfaceForms, flat_normals
+from service_fe.kinematics import soil_forms
 from service_fe.load_step import LoadStep, Model, Step, Unknowns
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
@@ -71,10 +73,12 @@ class ServiceProblem:
         In axisymmetry and in space all forces, areas and volumes are those of the whole body; in
         axisymmetry the pile may move along its axis only.
     normals
-        Exact normals of the pile; by default those of a flat-ended one.
+        Normals of the pile's exact surface; by default those of a flat-ended one.
     inclusion
         A deformable pile in the mesh, see ``deformable_pile``; what is called pile otherwise is
         then the cap on its head.
+    strength_share
+        Of the shear strength of the interface; by default that of facets that are the surface.
 
     Raises
     ------
@@ -93,16 +97,19 @@ class ServiceProblem:
         kinematics: Kinematics = Kinematics.PLANE_STRAIN,
         normals: NormalsOf = flat_normals,
         inclusion: Inclusion | None = None,
+        strength_share: ShareOf = whole_strength,
     ) -> None:
-        self._soil = FORMS[kinematics](mesh)
         self.mesh, self.ground, self.inclusion = mesh, ground, inclusion
         self.numerics = numerics or ServiceNumerics()
+        mean_dilatation = self.numerics.mean_dilatation
+        self._soil = soil_forms(mesh, kinematics, mean_dilatation=mean_dilatation)
         self.dim = mesh.nodes.shape[1]
         self.whole_body = WHOLE_PILE[kinematics]
         twin = None if inclusion is None else inclusion.twin
         self._interface = InterfaceForms(mesh, kinematics, normals, twin)
         if twin is not None:
             open_pattern(self._soil.matrix)
+        self.interface_strength_share = strength_share(self._interface.facets)
         soils = soils_of(ground)
         strength = undrained_shear_strength(ground, self._interface.positions[:, -1])
         self.model = Model(
@@ -110,8 +117,9 @@ class ServiceProblem:
             interface=self._interface,
             solver=make_solver(self._soil, self.numerics),
             materials=dispatch.pack(soils if inclusion is None else (*soils, inclusion.law)),
-            interface_parameters=interface_parameters(
-                interface, inclusion, strength, self._interface.parts
+            interface_parameters=with_strength_share(
+                interface_parameters(interface, inclusion, strength, self._interface.parts),
+                self.interface_strength_share,
             ),
             is_fixed=roller_supports(mesh) if is_fixed is None else is_fixed,
             pile_weight=-pile_weight * axial(self.dim),

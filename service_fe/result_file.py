@@ -14,7 +14,7 @@ from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEStat
 from install_mpm.record import StateFileError, read_record, write_record
 from install_mpm.seal import new_state_file, open_state_file
 from install_mpm.state_file import read_header, write_header
-from service_fe.options import Cycles, Displace, Lateral, Load, Programme, Release, Rotate
+from service_fe.options import Cycles, Displace, Lateral, Load, Programme, Release, Resume, Rotate
 from service_fe.results import (
     AlongPile,
     Curve,
@@ -37,7 +37,7 @@ ALONG: dict[str, type] = {"along": AlongPile}
 """Group of a programme for a pile in space."""
 
 _PROGRAMME_OF_KIND: dict[str, type[Programme]] = {
-    kind.kind: kind for kind in (Release, Displace, Lateral, Rotate, Load, Cycles)
+    kind.kind: kind for kind in (Release, Resume, Displace, Lateral, Rotate, Load, Cycles)
 }
 _REMEDY = "run the service stage again"
 

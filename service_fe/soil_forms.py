@@ -30,6 +30,9 @@ DEGREE = 2
 COMPONENTS = {2: np.array([0, 1, 3]), 3: np.arange(6)}
 """Components of a Mandel six-vector (xx, yy, zz, xy, xz, yz) by dimension; in 2D yy is vertical."""
 
+IDENTITY = {2: [1.0, 1.0, 0.0], 3: [1.0, 1.0, 1.0, 0.0, 0.0, 0.0]}
+"""The unit tensor in these components."""
+
 BASIX_ORDER = {
     2: np.array([0, 1, 2, 4, 5, 3]),
     3: np.array([0, 1, 2, 3, 8, 9, 5, 7, 6, 4]),
@@ -47,14 +50,18 @@ def strain_vector(displacement: Any) -> Any:
 class SoilForms:
     """Discrete soil on a mesh of six-node triangles or ten-node tetrahedra.
 
+    With ``mean_dilatation`` all points of a cell have its mean change of volume, beside their own
+    shear, as in the installation.  The nodal forces stay those of the stress at each point, so
+    that a stress which varies linearly in a cell keeps its balance.
+
     Raises
     ------
     ValueError
         If the mid-side nodes are not in the middle of straight edges, or a node belongs to no cell.
     """
 
-    def __init__(self, mesh: FEMesh) -> None:
-        self.mesh = mesh
+    def __init__(self, mesh: FEMesh, *, mean_dilatation: bool = False) -> None:
+        self.mesh, self.mean_dilatation = mesh, mean_dilatation
         self.dim = mesh.nodes.shape[1]
         self.n_dofs = mesh.nodes.size
         self._components = COMPONENTS[self.dim]
@@ -115,14 +122,36 @@ class SoilForms:
         self._unit_weight_rows = self._quadrature_rows(self._unit_weight)
         self._stress_rows = self._quadrature_rows(self._stress)
         self._tangent_rows = self._quadrature_rows(self._tangent)
-        strain = strain_vector(self._displacement)
-        self._strain = fem.Expression(strain, points)
+        self._strain = fem.Expression(self._deformation(self._displacement), points)
         self._force_form = fem.form(ufl.dot(self._stress, strain_vector(test)) * dx)
         self._stiffness_form = fem.form(
-            ufl.dot(strain_vector(test), ufl.dot(self._tangent, strain_vector(trial))) * dx
+            ufl.dot(strain_vector(test), ufl.dot(self._tangent, self._deformation(trial))) * dx
         )
         self._weight_form = fem.form(self._unit_weight * test[self.dim - 1] * dx)
         self.matrix: PETSc.Mat = compat.make_matrix(self._stiffness_form)
+
+    def _deformation(self, displacement: Any) -> Any:
+        """Return the UFL vector of the strain, its volumetric part that of the cell if so wished.
+
+        In a straight cell the dilatation is linear, so its mean is that of the middle, to which it
+        is continued from each point.
+        """
+        strain = strain_vector(displacement)
+        if not self.mean_dilatation:
+            return strain
+        growth = ufl.dot(self._to_middle(), ufl.grad(ufl.div(displacement)))
+        return strain + growth / self.dim * ufl.as_vector(IDENTITY[self.dim])
+
+    def _to_middle(self) -> Any:
+        """Return the vectors in m from the integration points to the middle of their cells."""
+        space = compat.make_quadrature_space(self.domain, (self.dim,), DEGREE)
+        way = fem.Function(space)
+        middle = self.mesh.nodes[self.mesh.cell_nodes[:, : self.dim + 1]].mean(axis=1)
+        per_cell = len(self.integration_positions) // len(middle)
+        off = np.repeat(middle, per_cell, axis=0) - self.integration_positions
+        rows = self._quadrature_rows(way)
+        way.x.array.reshape(-1, self.dim)[rows] = off[self.partition.own_points]
+        return way
 
     def _quadrature_rows(self, function: Any) -> np.ndarray:
         """Return the row in the values of ``function`` of each own integration point (n,)."""

@@ -16,15 +16,16 @@ from service_fe.along_pile import Recorder
 from service_fe.coupled_solver import Work
 from service_fe.load_step import Step, Unknowns
 from service_fe.loading import (
+    END_OF,
     EQUILIBRATED,
-    RELEASED,
     ImposedStep,
     Mode,
     contradiction,
     imposed_steps,
+    start_of,
 )
 from service_fe.newton import StepNotConvergedError
-from service_fe.options import Programme, Release
+from service_fe.options import Programme
 from service_fe.problem import ServiceProblem
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
 from service_fe.rigid_pile import PileControl
@@ -67,6 +68,7 @@ def run(
     programmes: Sequence[Programme],
     observe: Observer = lambda progress: None,
     *,
+    rebound: np.ndarray | None = None,
     model: ModelName = "installed",
     case_text: str = "",
 ) -> ServiceResult:
@@ -79,10 +81,13 @@ def run(
     state
         Equilibrated state: handed over, or ``problem.wished_in_place_state()``.
     programmes
-        Programmes in order; "released" is the end of the release before them, and a programme may
-        start from the end of any before it.
+        Programmes in order; "released" is the end of the release before them, "resumed" that of
+        the rig's coming back, and a programme may start from the end of any before it.
     observe
         Called after each step.
+    rebound
+        Motion (n_motions,) in m and rad of the pile while the rig let go of it, before the
+        hand-over; None: it did not.
     model, case_text
         Name of the model and text of the case, kept in the result.
 
@@ -96,11 +101,10 @@ def run(
     starts = {EQUILIBRATED: state}
     results = []
     for programme in programmes:
-        start = EQUILIBRATED if isinstance(programme, Release) else programme.start
-        results.append(run_programme(problem, starts[start], programme, observe))
+        start = starts[start_of(programme)]
+        results.append(run_programme(problem, start, programme, observe, rebound))
         starts[programme.name] = results[-1].state
-        if isinstance(programme, Release):
-            starts[RELEASED] = results[-1].state
+        starts[END_OF.get(programme.kind, programme.name)] = results[-1].state
     return ServiceResult(
         model=model,
         mesh=problem.mesh,
@@ -134,8 +138,9 @@ def run_programme(
     state: FEState,
     programme: Programme,
     observe: Observer = lambda progress: None,
+    rebound: np.ndarray | None = None,
 ) -> ProgrammeResult:
-    """Return the result of one programme that starts from ``state``.
+    """Return the result of one programme that starts from ``state``; see ``run`` for the rest.
 
     Raises
     ------
@@ -144,7 +149,7 @@ def run_programme(
     """
     problem.model.solver.forget()
     load = problem.pile_load(state)
-    steps = imposed_steps(programme, load)
+    steps = imposed_steps(programme, load, rebound)
     rows = [_first_row(problem, steps[0].mode, load)]
     displacement = np.zeros_like(problem.mesh.nodes)
     guess, size = None, 0.0

@@ -11,9 +11,10 @@ import numpy as np
 from install_mpm.conventions import Kinematics
 from install_mpm.history import History
 from install_mpm.pile import PilePart
+from install_mpm.screw_history import driven
 from install_mpm.state_file import InstalledState
 from service_fe.cycles import accumulated
-from service_fe.options import Cycles, Load, Release, Rotate
+from service_fe.options import Cycles, Load, Release, Resume, Rotate
 from service_fe.results import (
     LINEAR_WORK,
     Curve,
@@ -24,7 +25,6 @@ from service_fe.results import (
 from workflows.case import AnyCase
 from workflows.comparison import has_ratio
 from workflows.continuity import continuity_figures
-from workflows.screw_theory import driven
 
 COLUMNS = ("programme", "model", "displacement_m", "head_load_N", "iterations", "residual")
 
@@ -111,7 +111,7 @@ def programme_figures(
             "installed": _cyclic_figures(programme, installed.curve),
             "wished_in_place": _cyclic_figures(programme, wished.curve),
         }
-    if isinstance(programme, Release | Load):
+    if isinstance(programme, Release | Resume | Load):
         return {
             "installed": _release_figures(installed.curve),
             "wished_in_place": _release_figures(wished.curve),

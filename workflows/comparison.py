@@ -15,7 +15,15 @@ from annotated_types import Ge, Le
 
 from handoff.options import Transfer
 from service_fe.loading import RELEASED
-from service_fe.options import Displace, Lateral, Programme, Release, Rotate, ServiceOptions
+from service_fe.options import (
+    Displace,
+    Lateral,
+    Programme,
+    Release,
+    Resume,
+    Rotate,
+    ServiceOptions,
+)
 from workflows.continuity import is_moved_on
 from workflows.errors import CaseError
 
@@ -74,7 +82,7 @@ def _rated(service: ServiceOptions) -> ServiceOptions:
     kept = tuple(
         programme
         for programme in service.programmes
-        if isinstance(programme, Release) or has_ratio(programme) or is_moved_on(programme)
+        if isinstance(programme, Release | Resume) or has_ratio(programme) or is_moved_on(programme)
     )
     return replace(service, programmes=kept)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from install_mpm.screw_pile import ScrewPile
-from service_fe.loading import EQUILIBRATED, UP
+from service_fe.loading import EQUILIBRATED, RESUMED, UP
 from service_fe.options import Displace, Programme, Rotate
 from service_fe.results import ProgrammeResult, ServiceResult
 
@@ -17,14 +17,20 @@ if TYPE_CHECKING:
 CONTINUITY_SHARES = (0.02, 0.05)
 """Ways, over the pile width, at which moving on is compared with the installation."""
 
+AT_THE_END = (EQUILIBRATED, RESUMED)
+"""Starts of programmes that go on where the installation ended."""
+
 FORCE, TORQUE = "head_load_over_crowd_force", "torque_over_installation_torque"
 
 
 def is_moved_on(programme: Programme) -> bool:
-    """Return whether a programme moves the pile on from where the installation left it."""
+    """Return whether a programme moves the pile on from where the installation left it.
+
+    That is where the rig let go of it, or where it had driven it to before.
+    """
     if isinstance(programme, Rotate):
-        return programme.about == "axis" and programme.start == EQUILIBRATED
-    return isinstance(programme, Displace) and programme.start == EQUILIBRATED
+        return programme.about == "axis" and programme.start in AT_THE_END
+    return isinstance(programme, Displace) and programme.start in AT_THE_END
 
 
 def moved_on(case: AnyCase, result: ProgrammeResult) -> tuple[np.ndarray, dict[str, np.ndarray]]:

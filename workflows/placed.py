@@ -6,11 +6,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from handoff.placed_pile import PlacedFlatPile, PlacedPile, PlacedScrewPile
+from install_mpm.screw_history import driven
 from install_mpm.screw_programme import corners, is_loaded
 from workflows.case import AnyCase
 from workflows.ranks import on_first
 from workflows.screw_case import ScrewCase
-from workflows.screw_theory import driven
 
 if TYPE_CHECKING:
     from handoff.fe_mesh import FEMesh
@@ -71,7 +71,8 @@ def loaded_in_service(
     model = deformable_model(
         problem.mesh, inside, case.service.pile, case.ground, case.interface,
         placed.weight(case.ground.water_table), kinematics=placed.kinematics,
-        normals=placed.normals, numerics=case.service.numerics,
+        normals=placed.normals, strength_share=placed.strength_share,
+        numerics=case.service.numerics,
     )  # fmt: skip
     return model.problem, model.start(state)
 
@@ -84,4 +85,5 @@ def service_problem(case: AnyCase, placed: PlacedPile, mesh: FEMesh) -> ServiceP
     return ServiceProblem(
         mesh, case.ground, case.interface, placed.weight(case.ground.water_table),
         case.service.numerics, kinematics=placed.kinematics, normals=placed.normals,
+        strength_share=placed.strength_share,
     )  # fmt: skip

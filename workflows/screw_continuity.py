@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from install_mpm.screw_history import driven
 from install_mpm.state_file import InstalledState
 from service_fe.results import ServiceResult
 from workflows.continuity import FORCE, TORQUE, is_moved_on, moved_on
@@ -15,7 +16,6 @@ from workflows.report_style import INK, INSTALLED, MUTED, WISHED, grid, panels
 from workflows.report_tables import group_row, spaced
 from workflows.report_units import significant
 from workflows.screw_case import ScrewCase
-from workflows.screw_theory import driven
 
 SHOWN_BEFORE = 4.0
 """Way of the installation that is shown, over that of the programmes that move the pile on."""

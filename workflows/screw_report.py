@@ -10,6 +10,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from install_mpm.interface import InterfacePoints
+from install_mpm.screw_history import driven
 from install_mpm.state_file import InstalledState
 from workflows import screw_report_curves as curves
 from workflows import screw_report_ground as ground
@@ -39,7 +40,7 @@ from workflows.screw_report_tables import (
 )
 from workflows.screw_report_text import CAPTIONS, FORMS, FRICTION_NOTE, LIMITS, METHOD, TIME_NOTE
 from workflows.screw_surface_pictures import tractions
-from workflows.screw_theory import driven, has_friction, part_torques
+from workflows.screw_theory import has_friction, part_torques
 
 HEADING = "Screw pile installation · three dimensions · forces for the whole pile"
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import undrained_shear_strength
-from install_mpm.screw_history import ScrewHistory
+from install_mpm.screw_history import ScrewHistory, driven
 from install_mpm.state_file import InstalledState
 from workflows.compare import QUADRATIC_ORDER
 from workflows.report_html import Cell, cell, number, table
@@ -16,7 +16,7 @@ from workflows.report_tables import group_row, option_rows, spaced
 from workflows.report_units import shown, significant
 from workflows.screw_case import ScrewCase
 from workflows.screw_report_curves import balance_error, turns
-from workflows.screw_theory import PartTorque, driven
+from workflows.screw_theory import PartTorque
 
 Row = list[str | Cell]
 

@@ -17,7 +17,7 @@ from scipy.integrate import trapezoid
 from install_mpm.constitutive.coulomb_interface import COHESION, TAN_FRICTION
 from install_mpm.exact_patches import strength_shares
 from install_mpm.interface import InterfacePoints
-from install_mpm.screw_history import ScrewHistory
+from install_mpm.screw_history import ScrewHistory, driven
 from install_mpm.screw_pile import (
     CONE,
     FLAT_TIP,
@@ -72,12 +72,6 @@ class Motion(NamedTuple):
     def advance_per_turn(self) -> float:
         """In m; the pitch for a pitch-matched pile."""
         return 2.0 * np.pi * self.advance / self.turn
-
-
-def driven(history: ScrewHistory) -> ScrewHistory:
-    """Return the history of the steps in which the rig drove the pile, before it let go."""
-    is_driven = history.release_share == 0.0
-    return ScrewHistory(*(values[is_driven] for values in history))
 
 
 def last_motion(pile: ScrewPile, history: ScrewHistory) -> Motion:

@@ -10,6 +10,9 @@ from install_mpm.constitutive.frictional import LOG_VOLUME, OPENING
 from install_mpm.constitutive.parameters import CoulombInterface, MohrCoulomb
 from install_mpm.ground import Ground
 
+NOWHERE, NONE = np.zeros((0, 2)), np.zeros(0)
+"""Places and shares of the strength of an interface without points."""
+
 
 @pytest.fixture
 def state(site) -> FEState:
@@ -28,7 +31,7 @@ def state(site) -> FEState:
 
 
 def test_no_stress_is_left_outside_the_yield_surface(site, state):
-    corrected, corrections = admissible_state(site.ground, site.interface, np.zeros((0, 2)), state)
+    corrected, corrections = admissible_state(site.ground, site.interface, NOWHERE, NONE, state)
     largest = np.abs(state.cauchy_stress).max()
     assert yield_values(site.ground, state).max() > 0.1 * largest
     assert yield_values(site.ground, corrected).max() <= 1e-6 * largest
@@ -38,7 +41,7 @@ def test_no_stress_is_left_outside_the_yield_surface(site, state):
 
 
 def test_admissible_stresses_and_all_mean_stresses_are_untouched(site, state):
-    corrected, _ = admissible_state(site.ground, site.interface, np.zeros((0, 2)), state)
+    corrected, _ = admissible_state(site.ground, site.interface, NOWHERE, NONE, state)
     inside = yield_values(site.ground, state) <= 0.0
     assert 100 < inside.sum() < 400
     assert np.abs(corrected.cauchy_stress - state.cauchy_stress)[inside].max() < 1e-9
@@ -48,7 +51,7 @@ def test_admissible_stresses_and_all_mean_stresses_are_untouched(site, state):
 
 
 def test_elastic_strain_carries_the_corrected_stress(site, state):
-    corrected, _ = admissible_state(site.ground, site.interface, np.zeros((0, 2)), state)
+    corrected, _ = admissible_state(site.ground, site.interface, NOWHERE, NONE, state)
     expected = elastic_strain_of(
         site.ground, corrected.material, corrected.cauchy_stress, corrected.state_variables
     )
@@ -61,7 +64,7 @@ def test_size_of_a_correction_is_relative_to_the_deviator(site):
     stress = np.zeros((1, 3, 3))
     stress[0, 0, 1] = stress[0, 1, 0] = 40e3
     corrected, corrections = admissible_state(
-        site.ground, site.interface, np.zeros((0, 2)), calm._replace(cauchy_stress=stress)
+        site.ground, site.interface, NOWHERE, NONE, calm._replace(cauchy_stress=stress)
     )
     assert corrected.cauchy_stress[0, 0, 1] == pytest.approx(20e3)
     assert corrections == pytest.approx((1.0, 0.5, 0.5))
@@ -79,7 +82,7 @@ def test_soil_under_pressure_has_no_opening():
     strain = elastic_strain_of(ground, calm.material, stress, variables)
     mixed = calm._replace(cauchy_stress=stress, elastic_strain=strain, state_variables=variables)
     interface = CoulombInterface(1e9, 1e8)
-    corrected, corrections = admissible_state(ground, interface, np.zeros((0, 2)), mixed)
+    corrected, corrections = admissible_state(ground, interface, NOWHERE, NONE, mixed)
     assert corrected.state_variables[0, OPENING] == 0.0
     assert corrected.state_variables[1, OPENING] == 0.01
     assert corrected.state_variables[2, OPENING] > 0.01
@@ -91,5 +94,6 @@ def test_soil_under_pressure_has_no_opening():
 def test_tractions_are_reduced_to_the_adhesion(site):
     traction = np.array([[15e3, -50e3], [-15e3, -50e3], [5e3, 20e3]])
     positions = np.column_stack([np.full(3, 0.5), np.zeros(3)])
-    returned = admissible_traction(site.ground, site.interface, positions, traction)
-    assert returned == pytest.approx(np.array([[10e3, -50e3], [-10e3, -50e3], [5e3, 20e3]]))
+    share = np.array([1.0, 1.04, 1.0])
+    returned = admissible_traction(site.ground, site.interface, positions, share, traction)
+    assert returned == pytest.approx(np.array([[10e3, -50e3], [-10.4e3, -50e3], [5e3, 20e3]]))

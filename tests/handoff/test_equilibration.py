@@ -25,6 +25,7 @@ class TwoBars:
     interface_areas = np.zeros(0)
     interface_normals = np.zeros((0, 2))
     interface_facet_normals = np.zeros((0, 2))
+    interface_strength_share = np.zeros(0)
     interface_parts = np.zeros(0, dtype=np.int64)
 
     def __init__(self, largest_force: float = np.inf, leftover: float = 0.0) -> None:

@@ -44,7 +44,7 @@ def handed_off() -> HandedOffState:
         interface=FEInterfacePoints(
             random.normal(size=(2, 2)), random.normal(size=(2, 2)), np.ones(2), np.arange(2)
         ),
-        pile=HandedOffPile(np.array(5.0), np.array(0.0), np.array(120e3)),
+        pile=HandedOffPile(*map(np.array, (5.0, 0.0, 120e3, 6e-3, 0.01))),
         certificate=json.dumps({"synthetic_error": {"value": 0.01}}),
         case_text='title = "small"\n',
     )
@@ -108,7 +108,7 @@ def replace(name, value):
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
-        (set_attribute("version", 99), "version 99 of screwpile-handed-off-state is not version 2"),
+        (set_attribute("version", 99), "version 99 of screwpile-handed-off-state is not version 3"),
         (set_attribute("format", "screwpile-installed-state"), "expected 'screwpile-handed-off"),
         (set_attribute("case_sha256", "0" * 64), "/case is missing or does not match"),
         (set_attribute("conventions", "other"), "other conventions"),

@@ -25,6 +25,7 @@ class KnownSolution:
         self.interface_positions, self.interface_areas = surface.positions, surface.areas
         self.interface_normals, self.interface_parts = surface.normals, surface.parts
         self.interface_facet_normals = surface.normals
+        self.interface_strength_share = np.ones(len(surface.areas))
 
     def whole(self, values):
         return values

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from handoff.facet_points import facet_points
 from handoff.hand_over import hand_over, wished_in_place
 from handoff.interface_transfer import FESurface, forces_on_pile
 from handoff.line_of_sight import hides, screw_obstacle
@@ -17,13 +18,17 @@ from handoff.synthetic import rim_stress
 from handoff.transfer import least_squares_weights, transferred
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.conventions import rotation_matrix
+from install_mpm.exact_patches import strength_shares
 from install_mpm.ground import Ground
 from install_mpm.interface import InterfacePoints, force_on_pile, reaction
 from install_mpm.options import Box, Numerics, ScrewMeshOptions
+from install_mpm.screw_history import ScrewHistory
 from install_mpm.screw_pile import Helix, ScrewPile
 from install_mpm.screw_pile_mesh import generate_screw_mesh
 from install_mpm.screw_programme import Phase, ScrewProgramme
 from install_mpm.screw_setup import geostatic_state, set_up
+from install_mpm.screw_shape import surface_normals
+from install_mpm.screw_surface import facet_normals
 
 PILE = ScrewPile(0.5, 1.5, (Helix(1.0, 0.33, 0.12, 0.25),), 18e3)
 BOX = Box(2.75, 3.5, 0.6)
@@ -50,10 +55,23 @@ def make_problem():
     def make(mesh):
         return ServiceProblem(
             mesh, GROUND, LAW, PLACED.weight(None), kinematics=PLACED.kinematics,
-            normals=PLACED.normals,
+            normals=PLACED.normals, strength_share=PLACED.strength_share,
         )  # fmt: skip
 
     return make
+
+
+def test_rebound_is_the_motion_since_the_rig_let_go(undisturbed):
+    assert PLACED.rebound(undisturbed) == (0.0, 0.0)
+    fields = dict.fromkeys(ScrewHistory._fields, np.zeros(4))
+    fields |= {
+        "penetration": np.array([0.0, 0.30, 0.298, 0.294]),
+        "rotation": np.array([0.0, -5.0, -4.998, -4.99]),
+        "release_share": np.array([0.0, 0.0, 0.5, 1.0]),
+    }
+    pile = undisturbed.pile._replace(penetration=np.array(0.294), rotation=np.array(-4.99))
+    released = undisturbed._replace(history=ScrewHistory(**fields), pile=pile)
+    assert PLACED.rebound(released) == pytest.approx((6e-3, 0.01))
 
 
 def test_linear_field_is_reproduced_and_a_quadratic_one_to_second_order():
@@ -155,7 +173,8 @@ def test_pile_that_was_not_installed_is_the_pile_wished_in_place(undisturbed, ma
     value = {name: figure.value for name, figure in certificate.figures.items()}
     assert value["out_of_balance_geostatic"] < 1e-13
     assert value["out_of_balance_before"] < 1e-4  # what the slip limit takes on plane facets
-    assert value["equilibration_displacement"] < 1e-4
+    # and at the corners of the edges, whose one normal leans by 45 degrees: a quarter of a mm there
+    assert value["equilibration_displacement"] < 3e-4
     assert value["mean_pressure_relaxation"] < 1e-3
     problem = make_problem(handed_off.mesh)
     programmes = (
@@ -171,14 +190,34 @@ def test_pile_that_was_not_installed_is_the_pile_wished_in_place(undisturbed, ma
 
 
 @pytest.mark.gmsh
+def test_facets_are_those_of_the_installation():
+    """One normal at each corner, three points, and strengths of the exact surface."""
+    facets = facet_points(PLACED.mesh(BOX, OPTIONS, level_surface()))
+    assert len(facets.weights) == 3
+    normals, has_corner = facet_normals(PILE, facets, facets.facet_parts, facets.coordinates)
+    np.testing.assert_array_equal(PLACED.normals(facets), normals)
+    exact = surface_normals(PILE, facets.parts, facets.positions)
+    off = np.linalg.norm(normals - exact, axis=1).reshape(-1, 3).max(axis=1)
+    assert off[~has_corner].max() < 1e-12
+    assert off[has_corner].min() > 1e-3
+    np.testing.assert_array_equal(
+        PLACED.strength_share(facets),
+        strength_shares(PILE, facets, facets.facet_parts, facets.coordinates),
+    )
+    some = facets.selected(facets.facet_parts == 3)
+    assert (some.parts == 3).all()
+    np.testing.assert_array_equal(some.positions, facets.positions[facets.parts == 3])
+
+
+@pytest.mark.gmsh
 def test_turned_pile_has_turned_normals_and_distances():
     turned = PlacedScrewPile(PILE, 0.5)
     turn = rotation_matrix(0.5, 3)
     places = np.random.default_rng(2).uniform((-1, -1, -2.0), (1, 1, 0), size=(40, 3))
-    part = np.full(40, 3)
-    np.testing.assert_allclose(
-        turned.normals(part, places @ turn.T), PLACED.normals(part, places) @ turn.T, atol=1e-12
-    )
+    facets = facet_points(PLACED.mesh(BOX, OPTIONS, level_surface()))
+    moved = facets._replace(coordinates=facets.coordinates @ turn.T)
+    np.testing.assert_allclose(turned.normals(moved), PLACED.normals(facets) @ turn.T, atol=1e-12)
+    np.testing.assert_allclose(turned.strength_share(moved), PLACED.strength_share(facets))
     np.testing.assert_allclose(turned.distance(places @ turn.T), PLACED.distance(places))
     beside = np.array([[0.0, 0.7, -1.25 + 0.33 / 4.0], [0.0, 0.0, -1.9]])
     np.testing.assert_allclose(PLACED.distance(beside), [0.2, 0.4])

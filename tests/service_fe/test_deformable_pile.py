@@ -37,8 +37,8 @@ PUSH = (
 )
 
 
-def square_normals(part, _positions):
-    return np.array([NORMALS[number] for number in part], dtype=float).reshape(-1, 3)
+def square_normals(facets):
+    return np.array([NORMALS[number] for number in facets.parts], dtype=float).reshape(-1, 3)
 
 
 def tags_of(centres):

@@ -5,7 +5,7 @@ import pytest
 
 from service_fe.loading import imposed_steps
 from service_fe.newton import StepNotConvergedError
-from service_fe.options import Displace, Release, ServiceNumerics
+from service_fe.options import Displace, Release, Resume, ServiceNumerics
 from service_fe.rigid_pile import moved
 from service_fe.solve import ServiceError, advance, run, run_programme
 
@@ -127,6 +127,7 @@ def test_step_that_fails_after_all_cuts_is_never_accepted(make_pile_problem, und
     ("programmes", "message"),
     [
         ([Displace("push", 0.1, 0.01)], 'kind "release" before it'),
+        ([Displace("push", 0.1, 0.01, "resumed")], 'kind "resume" before it'),
         ([Displace("push", 0.0, 0.01, "equilibrated")], "has no displacement"),
         ([Release("one"), Release("one")], "2 programmes are named 'one'"),
         ([Displace("push", 0.1, 0.01, "later")], "starts from 'later', which is not before it"),
@@ -146,6 +147,23 @@ def test_first_step_is_resolved():
     steps = imposed_steps(Displace("push", 0.1, 0.05, first_step_halvings=3), np.zeros(3))
     sizes = [step.size for step in steps]
     assert sizes == pytest.approx([0.00625, 0.00625, 0.0125, 0.025, 0.05])
+
+
+def test_rig_takes_the_pile_back_to_where_it_let_go():
+    """It rose by 8 mm and turned by 0.02 rad; without a rebound it stays, under its load."""
+    rebound, load = np.array([0.0, 0.0, 8e-3, 0.0, 0.0, 0.02]), np.arange(6.0)
+    let_go, *steps = imposed_steps(Resume(steps=4), load, rebound)
+    control = let_go.control(0.0, 1.0)
+    np.testing.assert_array_equal(np.flatnonzero(control.is_loaded), [2, 5])
+    assert not control.load[control.is_loaded].any()
+    assert not control.motion.any()
+    assert [step.size for step in steps] == pytest.approx([2e-3] * 4)
+    control = steps[0].control(0.0, 1.0)
+    assert not control.is_loaded.any()
+    np.testing.assert_allclose(control.motion, [0.0, 0.0, -2e-3, 0.0, 0.0, -5e-3])
+    (still,) = imposed_steps(Resume(), load)
+    assert not still.control(0.0, 1.0).motion.any()
+    np.testing.assert_array_equal(still.load_end, load)
 
 
 def test_release_steps_go_to_zero():

@@ -10,9 +10,19 @@ from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic,
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground
 from service_fe.interface_forms import InterfaceForms
-from service_fe.options import Cycles, Displace, Lateral, Load, Release, Rotate, ServiceNumerics
+from service_fe.options import (
+    Cycles,
+    Displace,
+    Lateral,
+    Load,
+    Release,
+    Resume,
+    Rotate,
+    ServiceNumerics,
+)
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import PileControl, head_frame, held, moved, rigid_motion
+from service_fe.soil_forms import SoilForms
 from service_fe.solve import run
 from workflows.verification.solid_meshes import box_mesh, extruded, grid, quadratic_mesh
 
@@ -23,6 +33,9 @@ ELASTIC = HenckyElastic(5e6, 0.3)
 CLAY = VonMises(youngs_modulus=4e6, poissons_ratio=0.45, undrained_shear_strength=20e3)
 ROUGH = CoulombInterface(normal_stiffness=2e8, shear_stiffness=2e7, adhesion_factor=0.5)
 SIZE, HALF, TIP = 2.0, 0.4, 0.8
+FULL = ServiceNumerics(mean_dilatation=False)
+"""Every point of a cell has its own change of volume."""
+
 NORMALS = {0: (0, 0, 1), 1: (-1, 0, 0), 2: (1, 0, 0), 3: (0, -1, 0), 4: (0, 1, 0)}
 
 
@@ -52,8 +65,8 @@ def square_pile_tags(centres):
     return tags
 
 
-def square_normals(part, positions):
-    return np.array([NORMALS[number] for number in part], dtype=float).reshape(-1, 3)
+def square_normals(facets):
+    return np.array([NORMALS[number] for number in facets.parts], dtype=float).reshape(-1, 3)
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +124,7 @@ def test_patch_of_elastic_soil_takes_a_linear_displacement(cube):
 
 def test_strain_and_volume_of_a_tetrahedral_mesh(cube):
     ground = Ground(0.0, 1.0, ELASTIC)
-    problem = ServiceProblem(cube, ground, ROUGH, kinematics=SPACE)
+    problem = ServiceProblem(cube, ground, ROUGH, numerics=FULL, kinematics=SPACE)
     assert problem.integration_volumes.sum() == pytest.approx(8.0, rel=1e-12)
     x, y, z = problem.integration_positions.T
     nodes = cube.nodes
@@ -122,6 +135,50 @@ def test_strain_and_volume_of_a_tetrahedral_mesh(cube):
     np.testing.assert_allclose(
         problem.model.soil.strain(displacement), strain[:, ROW, COLUMN] * SCALE, atol=1e-12
     )
+
+
+def test_all_points_of_a_cell_have_its_mean_dilatation(cube):
+    """Beside their own shear strain; of a linear displacement nothing changes."""
+    full, mean = SoilForms(cube), SoilForms(cube, mean_dilatation=True)
+    displacement = np.random.default_rng(3).normal(size=cube.nodes.shape)
+    own, found = (soil.strain(displacement).reshape(-1, 4, 6) for soil in (full, mean))
+    growth = own[:, :, :3].sum(axis=2)
+    assert np.ptp(growth, axis=1).max() > 1.0
+    expected = own.copy()
+    expected[:, :, :3] += (growth.mean(axis=1, keepdims=True) - growth)[:, :, None] / 3.0
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+    linear = cube.nodes @ np.arange(9.0).reshape(3, 3)
+    np.testing.assert_allclose(mean.strain(linear), full.strain(linear), atol=1e-12)
+
+
+def test_undrained_block_does_not_lock():
+    """A corner pressed into a block that hardly changes its volume, on two meshes.
+
+    Without mean dilatation the coarse block is far stiffer than the fine one, with it hardly.
+    """
+    stiffness = {}
+    for name, numerics in (("full", FULL), ("mean", ServiceNumerics())):
+        stiffness[name] = [corner_stiffness(n_cells, numerics) for n_cells in (2, 4)]
+    full, mean = (coarse / fine for coarse, fine in (stiffness["full"], stiffness["mean"]))
+    assert stiffness["full"][1] > stiffness["mean"][1]
+    assert full > 1.0 + 2.0 * abs(mean - 1.0)
+
+
+def corner_stiffness(n_cells, numerics):
+    """Force in N per m that presses a quarter of the top of a block of 1 m into it."""
+    lines = np.linspace(0.0, 1.0, n_cells + 1)
+    mesh = fe_mesh(box_mesh(lines, lines, lines - 1.0), lambda centres: np.full(len(centres), -1))
+    x, y, z = mesh.nodes.T
+    is_fixed = np.stack([(x == 0.0) | (x == 1.0), (y == 0.0) | (y == 1.0), z == -1.0], axis=1)
+    is_pressed = (z == 0.0) & (x <= 0.5) & (y <= 0.5)
+    is_fixed[is_pressed] = True
+    problem = ServiceProblem(
+        mesh, Ground(0.0, 1.0, HenckyElastic(1e6, 0.4999)), ROUGH, numerics=numerics,
+        kinematics=SPACE, is_fixed=is_fixed,
+    )  # fmt: skip
+    motion = np.where(is_pressed, -1e-3, 0.0)[:, None] * [0.0, 0.0, 1.0]
+    step = problem.solve(problem.wished_in_place_state(), held(3), support_motion=motion)
+    return -step.support_reaction[is_pressed, 2].sum() / 1e-3
 
 
 def test_undisturbed_ground_is_in_balance(problem, undisturbed):
@@ -196,6 +253,8 @@ def test_programmes_in_space(problem, undisturbed):
     """Each reaches what it prescribes, with the loads it keeps."""
     programmes = (
         Release(steps=1),
+        Resume(steps=2),
+        Rotate("on", 0.002, 0.002, start="resumed", advance=1e-3, first_step_halvings=0),
         Displace("compression", 4e-3, 4e-3, first_step_halvings=0),
         Lateral("lateral", 4e-3, 4e-3, height=1.0, direction=0.3, first_step_halvings=0),
         Lateral("fixed", 4e-3, 4e-3, head="fixed", first_step_halvings=0),
@@ -204,10 +263,16 @@ def test_programmes_in_space(problem, undisturbed):
         Load("combined", vertical=5e3, lateral=1e3, torque=500.0, height=0.5, steps=2),
         Cycles("cycles", "lateral", amplitude=1e3, cycles=2, steps=1, start="combined"),
     )
-    result = run(problem, undisturbed, programmes)
+    rebound = np.array([0.0, 0.0, 2e-3, 0.0, 0.0, 0.004])
+    result = run(problem, undisturbed, programmes, rebound=rebound)
     curve = {entry.programme.name: entry.curve for entry in result.programmes}
     scale = np.abs(curve["compression"].load).max()
     np.testing.assert_allclose(curve["release"].load[-1], np.zeros(6), atol=1e-6 * scale)
+    let_go, *back = np.diff(curve["resume"].motion, axis=0)
+    np.testing.assert_allclose(curve["resume"].load[1, [2, 5]], [0.0, 0.0], atol=1e-6 * scale)
+    np.testing.assert_allclose(let_go[[0, 1, 3, 4]], np.zeros(4), atol=1e-12)
+    np.testing.assert_allclose(back, [-rebound / 2, -rebound / 2], atol=1e-12)
+    np.testing.assert_allclose(curve["on"].load[0], curve["resume"].load[-1], rtol=1e-9)
     np.testing.assert_allclose(curve["compression"].motion[-1], [0, 0, -4e-3, 0, 0, 0], atol=1e-12)
     lateral = curve["lateral"]
     assert lateral.displacement[-1] == pytest.approx(4e-3)
@@ -240,8 +305,9 @@ def test_slab_of_tetrahedra_settles_as_plane_strain_does(make_structured_mesh):
 
     plane = ServiceProblem(make_structured_mesh(x, z, tag_of), ground, ROUGH)
     slab = ServiceProblem(
-        fe_mesh(box_mesh(x, np.array([0.0, 0.4]), z), outer_tags), ground, ROUGH, kinematics=SPACE
-    )
+        fe_mesh(box_mesh(x, np.array([0.0, 0.4]), z), outer_tags), ground, ROUGH, numerics=FULL,
+        kinematics=SPACE,
+    )  # fmt: skip
     heights = []
     for problem, dim in ((plane, 2), (slab, 3)):
         state = problem.wished_in_place_state()

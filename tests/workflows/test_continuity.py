@@ -55,6 +55,8 @@ def test_what_does_not_go_on_is_left_out():
     back = Rotate("back", 0.1, 0.01, start="equilibrated")
     pull = Displace("pull", -0.1, 0.01, start="equilibrated")
     assert not is_moved_on(Displace("later", 0.1, 0.01))
+    assert is_moved_on(Rotate("on", -0.1, 0.01, start="resumed"))
+    assert is_moved_on(Displace("on", 0.1, 0.01, start="resumed"))
     assert not is_moved_on(Rotate("tilt", 0.1, 0.01, about="horizontal", start="equilibrated"))
     service = SimpleNamespace(programmes=(entry(back, 0.1, 8e3), entry(pull, -0.1, -8e3)))
     assert continuity_figures(screw_case("right"), INSTALLATION, service) == {}

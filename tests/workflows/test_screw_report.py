@@ -17,6 +17,7 @@ from install_mpm.ground import Ground
 from install_mpm.history import append
 from install_mpm.installation import InstallationProgress
 from install_mpm.options import Box, ScrewMeshOptions, ScrewNumerics
+from install_mpm.screw_history import driven
 from install_mpm.screw_pile import Helix, ScrewPile, part_names
 from install_mpm.screw_pile_mesh import generate_screw_mesh
 from install_mpm.screw_programme import Phase, Pose, ScrewProgramme, phase_motion, rim_travel
@@ -42,7 +43,7 @@ from workflows.screw_pictures import plane_section
 from workflows.screw_report import write_screw_report
 from workflows.screw_report_curves import balance_error
 from workflows.screw_slices import distance_from_pile
-from workflows.screw_theory import Motion, closed_forms, driven, part_torques
+from workflows.screw_theory import Motion, closed_forms, part_torques
 from workflows.screw_view import Frame, feature_edges, project, rasterise, view_from
 from workflows.stages import report as report_stage
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from install_mpm.history import History
 from install_mpm.installation import InstallationProgress, Observer, install
+from install_mpm.screw_history import driven
 from install_mpm.screw_installation import install_screw_pile
 from install_mpm.state_file import InstalledState, write_installed_state
 from install_mpm.timing import measured_seconds, start_measuring
@@ -25,7 +26,7 @@ from workflows.progress import Advance, no_progress
 from workflows.report_units import FORCE_UNIT
 from workflows.screw_case import ScrewCase
 from workflows.screw_export import frame_interval, frame_writer
-from workflows.screw_theory import driven, edge_remark
+from workflows.screw_theory import edge_remark
 from workflows.state_files import read_checked
 
 

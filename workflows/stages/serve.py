@@ -11,9 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from handoff.fe_state_file import HandedOffState
+from handoff.fe_state_file import HandedOffPile, HandedOffState
 from service_fe.result_file import write_service_result
 from service_fe.results import ServiceResult
+from service_fe.rigid_pile import axial
 from service_fe.solve import run as run_programmes
 from workflows.case import AnyCase, case_text
 from workflows.directory import HANDED_OFF, SERVICE
@@ -47,12 +48,20 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
         state,
         case.service.programmes,
         service_observer(case, advance),
+        rebound=rebound_motion(pile, problem.dim),
         model="installed",
         case_text=case_text(case),
     )
     if is_first():
         write_service_result(directory / SERVICE, result, created_by())
     return settled_notes(result) + fallback_notes(result)
+
+
+def rebound_motion(pile: HandedOffPile, dim: int) -> np.ndarray:
+    """Return the motion (n_motions,) in m and rad of the pile while the rig let go of it."""
+    motion = float(pile.rebound_rise) * axial(dim)
+    motion[-1] += float(pile.rebound_rotation)
+    return motion
 
 
 def settled_notes(result: ServiceResult) -> list[str]:

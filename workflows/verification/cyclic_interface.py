@@ -87,7 +87,7 @@ def _slide(
         CoulombInterface(10.0 * stiffness, stiffness, cohesion=strength),
         is_fixed=np.ones(block.nodes.shape, dtype=bool),
         kinematics=Kinematics.THREE_D,
-        normals=lambda part, _positions: np.tile([0.0, 0.0, 1.0], (len(part), 1)),
+        normals=lambda facets: np.tile([0.0, 0.0, 1.0], (len(facets.parts), 1)),
     )
     along = np.zeros(n_motions(3))
     along[:2] = np.cos(DIRECTION), np.sin(DIRECTION)

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import numpy as np
 
+from handoff.facet_points import FacetPoints
 from handoff.fe_mesh import FacetTag, FEMesh
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.conventions import Unit
@@ -80,6 +81,13 @@ def _mesh(radius: float, outer_ratio: float, size: float) -> FEMesh:
     return FEMesh(mesh.nodes, mesh.cell_nodes, facet_nodes, tags)
 
 
+def _towards_axis(facets: FacetPoints) -> np.ndarray:
+    """Return the normals (n_i, 2) of a cylinder, from soil to pile."""
+    place = facets.positions
+    towards: np.ndarray = -place / np.linalg.norm(place, axis=1)[:, None]
+    return towards
+
+
 def _pushed(
     mesh: FEMesh, radius: float, soil: VonMises, alpha: float, distance: float, steps: int
 ) -> list[Step]:
@@ -94,7 +102,7 @@ def _pushed(
         CoulombInterface(spring, spring, adhesion_factor=alpha),
         numerics=ServiceNumerics(tolerance=1e-8, max_iterations=30),
         is_fixed=is_fixed,
-        normals=lambda _part, place: -place / np.linalg.norm(place, axis=1)[:, None],
+        normals=_towards_axis,
     )
     motion = np.array([distance / steps, 0.0, 0.0])
     control = PileControl(np.zeros(3, dtype=bool), motion, np.zeros(3))

@@ -9,7 +9,7 @@ import numpy as np
 
 from handoff.fe_mesh import FacetTag, FEMesh
 from handoff.gmsh_triangles import triangulate
-from service_fe.interface_forms import facet_rule
+from install_mpm.interface import facet_rule
 
 
 def half_space_mesh(radius: float, extent: float, size_at_edge: float, growth: float) -> FEMesh:
@@ -67,7 +67,7 @@ def pressure_force(mesh: FEMesh, facets: np.ndarray) -> np.ndarray:
     nodes = mesh.facet_nodes[facets]
     start, end = mesh.nodes[nodes[:, 0]], mesh.nodes[nodes[:, 1]]
     inward = np.column_stack([start[:, 1] - end[:, 1], end[:, 0] - start[:, 0]])  # times length
-    shape, weights = facet_rule(2)
+    shape, weights = facet_rule(3, 3)
     around = 2.0 * np.pi * mesh.nodes[nodes][:, :, 0] @ shape.T * weights
     force = np.zeros_like(mesh.nodes)
     np.add.at(force, nodes, (around @ shape)[:, :, None] * inward[:, None])

@@ -151,7 +151,8 @@ def _carried(problem: ServiceProblem, state: FEState, width: float) -> FEState:
     strain = elastic_strain_of(problem.ground, state.material, stress, state.state_variables)
     raw = state._replace(cauchy_stress=stress, elastic_strain=strain)
     law, surface = CoulombInterface(1.0, 1.0), problem.interface_positions
-    admissible, _ = admissible_state(problem.ground, law, surface, raw)
+    share = problem.interface_strength_share
+    admissible, _ = admissible_state(problem.ground, law, surface, share, raw)
     options = HandoffOptions(size_at_pile=SIZE * width, size_far=SIZE_FAR * width)
     return equilibrate(problem, admissible, options)[0]
 

@@ -12,7 +12,8 @@ from install_mpm.background_mesh import (
     facet_edge_nodes,
     facets_opposite_vertices,
 )
-from service_fe.interface_forms import facet_geometry, facet_rule
+from install_mpm.interface import facet_rule
+from service_fe.interface_forms import facet_geometry
 
 
 def fe_mesh(mesh: BackgroundMesh, tag_of: Callable[[np.ndarray], np.ndarray]) -> FEMesh:
@@ -28,8 +29,9 @@ def fe_mesh(mesh: BackgroundMesh, tag_of: Callable[[np.ndarray], np.ndarray]) ->
 
 def nodal_areas(mesh: FEMesh, facets: np.ndarray) -> np.ndarray:
     """Return the integrals (node,) in m^2 of the shape functions over ``facets`` (n,)."""
-    sizes, _ = facet_geometry(mesh, facets)
-    shape, weights = facet_rule(3)
+    nodes = mesh.facet_nodes[facets]
+    sizes, _ = facet_geometry(mesh, nodes)
+    shape, weights = facet_rule(nodes.shape[1], 3)
     areas = np.zeros(len(mesh.nodes))
-    np.add.at(areas, mesh.facet_nodes[facets], np.outer(sizes, weights @ shape))
+    np.add.at(areas, nodes, np.outer(sizes, weights @ shape))
     return areas
