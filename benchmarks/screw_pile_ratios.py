@@ -67,7 +67,7 @@ def draw(rows, path):
             axes.grid(alpha=0.3)
     for axes in panels[-1]:
         axes.set_xlabel("rotation (degrees)")
-    panels[0, 1].legend(title="advancement ratio", fontsize=8)
+    panels[0, 0].legend(title="advancement ratio", fontsize=8, loc="lower right")
     figure.savefig(path, dpi=110)
 
 
