@@ -131,15 +131,13 @@ def _mumps_of_all(
     n_dofs = len(indptr) - 1
     values_in_place = np.zeros(len(indices))
     matrix = PETSc.Mat().createAIJ(
-        size=(n_dofs, n_dofs),
-        csr=(indptr, indices, values_in_place),
-        comm=PETSc.COMM_SELF,
+        size=(n_dofs, n_dofs), csr=(indptr, indices, values_in_place), comm=PETSc.COMM_SELF
     )
-    solver = PETSc.KSP().create(PETSc.COMM_SELF)
-    solver.setType("preonly")
-    solver.setOperators(matrix)
+    solver = _krylov_solver(matrix, "preonly")
     factorisation = solver.getPC()
-    iterative = _gmres(matrix, factorisation)
+    iterative = _krylov_solver(matrix, "gmres")
+    iterative.setPC(factorisation)
+    iterative.setPCSide(PETSc.PC.Side.RIGHT)  # its residual is that of the equations
     factorisation.setType("lu")
     factorisation.setFactorSolverType("mumps")
     prepare = partial(_prepare_mumps, factorisation)
@@ -174,14 +172,12 @@ def _mumps_of_all(
     return solve, release
 
 
-def _gmres(matrix: Any, preconditioner: Any) -> Any:
-    """Return GMRES (PETSc) whose residual is that of the equations, not the preconditioned one."""
+def _krylov_solver(matrix: Any, method: str) -> Any:
+    """Return PETSc's ``method`` for the matrix."""
     from petsc4py import PETSc
 
     solver = PETSc.KSP().create(PETSc.COMM_SELF)
-    solver.setType("gmres")
-    solver.setPC(preconditioner)
-    solver.setPCSide(PETSc.PC.Side.RIGHT)
+    solver.setType(method)
     solver.setOperators(matrix)
     return solver
 
