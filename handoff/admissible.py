@@ -69,9 +69,13 @@ def admissible_state(
 
 
 def _with_openings_closed(ground: GroundProfile, state: FEState) -> FEState:
-    """Return the state without openings, but where the soil carries nothing in any case."""
+    """Return the state without openings, but where the soil carries nothing in any case.
+
+    What was open is taken out of the specific volume, as in the installation.
+    """
     opening = np.zeros_like(state.state_variables, dtype=bool)
-    columns = dispatch.state_columns(dispatch.pack(soils_of(ground)), "opening")[state.material]
+    materials = dispatch.pack(soils_of(ground))
+    columns = dispatch.state_columns(materials, "opening")[state.material]
     has_one = np.flatnonzero(columns >= 0)
     opening[has_one, columns[has_one]] = True
     opening &= state.state_variables > 0.0
@@ -80,7 +84,12 @@ def _with_openings_closed(ground: GroundProfile, state: FEState) -> FEState:
     with_it, without = (_returned(ground, each, places)[0] for each in (state, closed))
     change = np.abs(with_it - without).max(axis=1)
     opening[places[change <= AT_REST * np.abs(without).max(axis=1)]] = False
-    return state._replace(state_variables=np.where(opening, 0.0, state.state_variables))
+    variables = np.where(opening, 0.0, state.state_variables)
+    log_volumes = dispatch.log_volume_columns(materials)[state.material]
+    has_volume = np.flatnonzero(log_volumes >= 0)
+    closed = (state.state_variables - variables)[has_volume].sum(axis=1)
+    variables[has_volume, log_volumes[has_volume]] -= closed
+    return state._replace(state_variables=variables)
 
 
 def _returned(

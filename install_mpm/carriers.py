@@ -23,6 +23,7 @@ from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.kernels import carry as kernels
 from install_mpm.kernels.update import carry_points
 from install_mpm.material_points import MaterialPoints
+from install_mpm.openings import share_openings
 
 
 def give_state(
@@ -34,6 +35,7 @@ def give_state(
     """Return the integration points with the state that the material points give them."""
     geometry = cell_geometry(mesh, model.cell, model.kinematics)
     threshold = model.numerics.fill_threshold
+    points, closed_volume = share_openings(points, model.materials)
     fill = fill_cells(points, mesh, model.cell, geometry, threshold)
     changed = merge(points, model.cell, fill, model.numerics.most_points_per_cell)
     if changed is not points:
@@ -41,7 +43,6 @@ def give_state(
     enriched = inject(changed, mesh, model.cell, geometry, fill, gradient)
     if enriched is not changed:
         fill = fill_cells(enriched, mesh, model.cell, geometry, threshold)
-    enriched = _with_shared_openings(enriched, model.materials)
     quadrature, is_empty = integration_points(enriched, model.cell, geometry, fill, gradient)
     if model.has_weight_of_points:
         quadrature = _with_weight_of(enriched, quadrature)
@@ -52,26 +53,8 @@ def give_state(
         n_empty=int(np.count_nonzero(is_empty)),
         n_injected=len(enriched.mass) - len(changed.mass),
         n_merged=len(points.mass) - len(changed.mass),
+        closed_volume=closed_volume,
     )
-
-
-def _with_shared_openings(points: MaterialPoints, materials: dispatch.Materials) -> MaterialPoints:
-    """Return the points with one opening of each soil of a cell: their mean, if all are open.
-
-    Open soil carries no pressure until it has closed.  Mixed with soil under pressure, at the
-    integration points or by smoothing, its opening would take that pressure away at rest.
-    """
-    variables = points.state_variables.copy()
-    for row, column in enumerate(dispatch.state_columns(materials, "opening")):
-        here = np.flatnonzero(points.material == row)
-        if column < 0 or not points.state_variables[here, column].any():
-            continue
-        opening, volume = points.state_variables[here, column], points.volume[here]
-        _, cell = np.unique(points.cell[here], return_inverse=True)
-        some_closed = np.bincount(cell, opening == 0.0) > 0.0
-        mean = np.bincount(cell, volume * opening) / np.bincount(cell, volume)
-        variables[here, column] = np.where(some_closed, 0.0, mean)[cell]
-    return points._replace(state_variables=variables)
 
 
 def integration_points(

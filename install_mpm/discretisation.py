@@ -81,3 +81,5 @@ class StepStart(NamedTuple):
     """Integration points of filled cells without a material point."""
     n_injected: int = 0
     n_merged: int = 0
+    closed_volume: float = 0.0
+    """Volume in m3 (in 2D m2, or m3 per radian) of sand's openings that closed; see openings.py."""

@@ -116,6 +116,10 @@ class ScrewHistory(NamedTuple):
         np.ndarray, _added("", "relative change of the mass of all points by merging and splitting")
     ]
     volume_error: Annotated[np.ndarray, _added("", "the same of their volume; NaN: not recorded")]
+    closed_volume: Annotated[
+        np.ndarray,
+        _added("m3", "openings of sand that closed beside sand under pressure; NaN: not recorded"),
+    ]
     edge_torque: Annotated[
         np.ndarray,
         _added("N m", "by hand, of edges and rim of plates that the mesh holds as surfaces; not in "

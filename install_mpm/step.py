@@ -44,6 +44,8 @@ class StepCounts(NamedTuple):
     """Relative change of the mass of all points by merging and splitting."""
     volume_error: float
     """The same of their volume."""
+    closed_volume: float
+    """Volume in m3 of the openings of sand that closed beside sand under pressure."""
 
 
 class StepResult(NamedTuple):
@@ -114,14 +116,17 @@ def count(points: MaterialPoints, given: StepStart) -> StepCounts:
         injected_points=given.n_injected,
         merged_points=given.n_merged,
         projected_points=0,
-        mass_error=_relative_change(points.mass, given.points.mass),
-        volume_error=_relative_change(points.volume, given.points.volume),
+        mass_error=_relative_change(points.mass.sum(), given.points.mass.sum()),
+        volume_error=_relative_change(
+            points.volume.sum(), given.points.volume.sum() + given.closed_volume
+        ),
+        closed_volume=given.closed_volume,
     )
 
 
-def _relative_change(before: np.ndarray, after: np.ndarray) -> float:
+def _relative_change(before: float, after: float) -> float:
     """Return the change of a sum over its size before, zero if it is zero (soil without weight)."""
-    return float(abs(after.sum() - before.sum()) / (before.sum() or 1.0))
+    return float(abs(after - before) / (before or 1.0))
 
 
 def switch_on(interface: InterfacePoints, fill: CellFill, model: Discretisation) -> InterfacePoints:

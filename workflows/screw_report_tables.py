@@ -119,9 +119,18 @@ def _point_rows(case: ScrewCase, installed: InstalledState) -> list[Row]:
          number(whole(largest_known(history.mass_error), "", 2))],
         ["volume changed by them, worst step",
          number(whole(largest_known(history.volume_error), "", 2))],
+        ["openings of sand that closed, all steps, over the volume of the soil",
+         number(whole(_closed_share(installed), "", 2))],
         ["scatter of the pressure in a cell within a diameter of the pile, worst step",
          number(whole(scatter, "Pa", 2) + over)],
     ]  # fmt: skip
+
+
+def _closed_share(installed: InstalledState) -> float | None:
+    """Return the volume of closed openings over that of the soil; None if it was not recorded."""
+    closed = installed.history.closed_volume
+    known = closed[np.isfinite(closed)]
+    return float(known.sum() / installed.material_points.volume.sum()) if len(known) else None
 
 
 def winding_rows(history: ScrewHistory) -> list[Row]:

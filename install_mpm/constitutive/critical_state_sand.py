@@ -120,7 +120,7 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
     """Return to the cone; see ``dispatch.update_stress`` for arguments and status."""
     volumetric = trace(trial_strain) + state_old[OPENING]
     sheared, shear = shear_invariant(trial_strain), state_old[SHEAR]
-    log_volume = state_old[LOG_VOLUME] + volumetric
+    log_volume = state_old[LOG_VOLUME] + trace(trial_strain)  # the opening is part of it
     pressure = mean_pressure(volumetric, parameters)
     ratio, _, _ = peak_stress_ratio(pressure, log_volume, parameters)
     if not np.isfinite(pressure + ratio + sheared):
@@ -140,7 +140,7 @@ def update_stress(trial_strain, parameters, state_old, stress, elastic_strain, s
     if is_open:
         stress[:] = 0.0
     state[OPENING] = max(volumetric, 0.0) if elastic == 0.0 else 0.0
-    state[LOG_VOLUME] = log_volume - elastic - state[OPENING]
+    state[LOG_VOLUME] = log_volume - elastic
     state[SHEAR] = updated_shear_modulus(pressure, parameters, shear)
     share = secant / (3.0 * state[SHEAR])
     for i in range(6):

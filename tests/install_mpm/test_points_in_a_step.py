@@ -17,6 +17,7 @@ from install_mpm.ground import Ground
 from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
 from install_mpm.mesh_generation import generate_background_mesh
+from install_mpm.openings import share_openings
 from install_mpm.pile_surface import initial_interface, pile_elements
 from install_mpm.seeding import seed_points
 from install_mpm.soft_terms import cell_options, opening_share, volumetric_strain_under
@@ -168,25 +169,64 @@ def test_soil_without_an_apex_never_opens(make_column, clay_ground):
     assert not opening_share(given.quadrature, column.model.materials).any()
 
 
-def test_openings_of_a_cell_are_shared_or_closed(make_column, rng):
-    """Sand that has opened and sand under pressure in one cell: at rest no pressure is lost."""
-    column = make_column(Ground(unit_weight=18e3, k0=0.5, soil=DENSE_SAND))
-    points = column.scattered_points(rng)
+def with_openings(points, rng):
+    """Sand that has opened in three cells, in the third of them beside a point that has not."""
     state = points.state_variables.copy()
     is_open = points.cell < 3
     state[is_open, OPENING] = rng.uniform(0.001, 0.02, is_open.sum())
-    first_of_two = np.flatnonzero(points.cell == 2)[0]
-    state[first_of_two, OPENING] = 0.0
-    points = points._replace(state_variables=state)
+    state[np.flatnonzero(points.cell == 2)[0], OPENING] = 0.0
+    return points._replace(state_variables=state)
+
+
+def test_openings_of_a_cell_are_shared_or_closed(make_column, rng):
+    """Sand that has opened and sand under pressure in one cell: at rest no pressure is lost."""
+    column = make_column(Ground(unit_weight=18e3, k0=0.5, soil=DENSE_SAND))
+    points = with_openings(column.scattered_points(rng), rng)
     given = give_state(points, column.mesh, column.model, column.gradient)
-    opening = given.points.state_variables[:, OPENING]
+    opening, before = given.points.state_variables[:, OPENING], points.state_variables[:, OPENING]
     for cell in (0, 1):
-        here, before = given.points.cell == cell, points.cell == cell
-        mean = np.average(state[before, OPENING], weights=points.volume[before])
-        np.testing.assert_allclose(opening[here], mean, rtol=1e-12)
+        of_cell = opening[given.points.cell == cell]
+        assert np.ptp(of_cell) == 0.0
+        assert before[points.cell == cell].min() < of_cell[0] < before[points.cell == cell].max()
     assert not opening[given.points.cell > 1].any()
     per_cell = given.quadrature.state_variables[:, OPENING].reshape(len(column.mesh.cell_nodes), -1)
     assert not per_cell[2:].any()
+
+
+def test_what_was_open_goes_with_the_opening_and_sharing_conserves_volume(make_column, rng):
+    """Passing points under pressure would make sand in a dead corner grow without end."""
+    column = make_column(Ground(unit_weight=18e3, k0=0.5, soil=DENSE_SAND))
+    points = with_openings(column.scattered_points(rng), rng)
+    shared, closed_volume = share_openings(points, column.model.materials)
+    opening = points.state_variables[:, OPENING]
+    volume = np.where(points.cell == 2, points.volume * np.exp(-opening), points.volume)
+    of_cell, expected = (np.bincount(points.cell, each) for each in (shared.volume, volume))
+    np.testing.assert_allclose(of_cell, expected, rtol=1e-14)
+    assert closed_volume == pytest.approx(points.volume.sum() - volume.sum(), rel=1e-9)
+    assert closed_volume > 0.0
+    initial_volume = points.volume / points.volume_ratio
+    np.testing.assert_allclose(shared.volume / shared.volume_ratio, initial_volume, rtol=1e-14)
+    change = specific_volume(shared) - specific_volume(points)
+    np.testing.assert_allclose(change, np.log(shared.volume / points.volume), atol=1e-14)
+    assert np.array_equal(shared.mass, points.mass)
+
+
+def test_undrained_sand_keeps_its_volume(make_column, rng):
+    """It is that of its pore water: only the opening is shared."""
+    soil = replace(DENSE_SAND, pore_fluid_bulk_modulus=2e9)
+    column = make_column(Ground(unit_weight=18e3, k0=0.5, soil=soil))
+    points = column.scattered_points(rng)
+    state = points.state_variables.copy()
+    (opening,) = dispatch.state_columns(column.model.materials, "opening")
+    state[points.cell < 2, opening] = 0.01
+    state[0, opening] = 0.02
+    points = points._replace(state_variables=state)
+    shared, closed_volume = share_openings(points, column.model.materials)
+    assert closed_volume == 0.0
+    assert np.array_equal(shared.volume, points.volume)
+    same = np.delete(shared.state_variables == points.state_variables, opening, axis=1)
+    assert same.all()
+    assert shared.state_variables[0, opening] < 0.02
 
 
 def test_collapsed_points_are_not_sound(make_column, elastic_ground, rng):

@@ -13,7 +13,7 @@ from install_mpm.constitutive.parameters import (
     ModifiedCamClay,
     MohrCoulomb,
 )
-from install_mpm.constitutive.pressure_elasticity import bulk_modulus
+from install_mpm.constitutive.pressure_elasticity import bulk_modulus, mean_pressure
 from install_mpm.constitutive.state_variables import STATE_VARIABLES
 
 CLAY = ModifiedCamClay(1.2, 0.2, 0.04, 1.0, overconsolidation_ratio=1.5)
@@ -270,6 +270,27 @@ def test_opened_sand_keeps_a_trace_of_its_elastic_tangent():
     row = dispatch.pack([soil]).parameters[0]
     elastic = 3.0 * bulk_modulus(0.0, row) * VOLUMETRIC + 2.0 * state[0, 2] * DEVIATORIC
     np.testing.assert_allclose(opened.tangent[0], APEX_STIFFNESS * elastic, rtol=1e-12, atol=1e-20)
+
+
+def test_sand_keeps_account_of_its_volume_while_it_opens_and_closes():
+    """The opening is part of the plastic volume; from it the sand closes to where it opened."""
+    soil, tensor = FIRM, -50e3 * np.eye(3)[None]
+    start = dispatch.initial_state(soil, np.zeros(1), tensor)
+    strain, state, total = strain_of(soil, vectors(tensor), start), start, 0.0
+    volume_at_start = start[0, 0] + strain[0, :3].sum()
+    stretches = np.array([0.02, 0.03, -0.01, -0.02, -0.03, -0.01])
+    for stretch in stretches:
+        strain = strain + stretch / 3.0 * np.array([[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]])
+        result = evaluate(soil, strain, state)
+        strain, state, total = result.elastic_strain, result.state, total + stretch
+        volume = state[0, 0] + strain[0, :3].sum()
+        assert volume - volume_at_start == pytest.approx(total, abs=1e-13)
+        assert state[0, 1] == 0.0 or state[0, 0] > start[0, 0]
+    row = dispatch.pack([soil]).parameters[0]
+    elastic_at_start = volume_at_start - start[0, 0]
+    pressure = mean_pressure(elastic_at_start + stretches.sum(), row)
+    assert invariants(result.stress[0])[0] == pytest.approx(pressure, rel=1e-12)
+    assert state[0, 0] == pytest.approx(start[0, 0], abs=1e-13)
 
 
 def compressed(soil, pressure, steps, axial, radial):
