@@ -9,7 +9,7 @@ from handoff.tensor_arrays import six_vectors, tensors_of
 from install_mpm.constitutive import dispatch
 from install_mpm.geostatic import undisturbed_state
 from install_mpm.ground import GroundProfile, geostatic_stress, soils_of
-from install_mpm.interface import axes_of
+from install_mpm.interface_axes import axes_of
 
 
 def geostatic_state(

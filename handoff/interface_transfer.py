@@ -15,7 +15,8 @@ from scipy.interpolate import PchipInterpolator
 
 from handoff.geostatic import geostatic_traction
 from install_mpm.ground import GroundProfile
-from install_mpm.interface import InterfacePoints, axes_of
+from install_mpm.interface import InterfacePoints
+from install_mpm.interface_axes import axes_of
 from install_mpm.pile import PilePart, surface_normals
 
 COORDINATE = {PilePart.BASE: 0, PilePart.SHAFT: 1}

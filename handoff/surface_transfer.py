@@ -18,7 +18,8 @@ from handoff.interface_transfer import FESurface
 from handoff.transfer import transfer_least_squares
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.ground import GroundProfile
-from install_mpm.interface import InterfacePoints, axes_of, local_axes
+from install_mpm.interface import InterfacePoints, local_axes
+from install_mpm.interface_axes import axes_of
 from install_mpm.screw_pile import ScrewPile, part_names
 from install_mpm.screw_surface import pile_elements, place_points
 

@@ -20,7 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from install_mpm.interface import InterfaceElements, quarter_turned
+from install_mpm.interface import InterfaceElements
+from install_mpm.interface_axes import quarter_turned
 from install_mpm.kernels.scatter import scatter_force
 from install_mpm.pile import PileMotion, rigid_displacement
 

@@ -9,7 +9,8 @@ from install_mpm.constitutive import coulomb_interface
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import GroundProfile, geostatic_stress, undrained_shear_strength
-from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule, frames
+from install_mpm.interface import InterfaceElements, InterfacePoints, facet_rule
+from install_mpm.interface_axes import frames
 from install_mpm.pile import Pile, PilePart, surface_normals
 
 POINTS_PER_FACET = 3

@@ -18,7 +18,7 @@ from handoff.facet_points import FacetPoints, NormalsOf, facet_points
 from handoff.fe_mesh import FEMesh
 from install_mpm.constitutive import coulomb_interface
 from install_mpm.conventions import Kinematics
-from install_mpm.interface import axes_of
+from install_mpm.interface_axes import axes_of
 from install_mpm.pile import surface_normals
 from service_fe.kinematics import width
 from service_fe.rigid_pile import rigid_motion

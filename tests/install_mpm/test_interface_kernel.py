@@ -11,11 +11,11 @@ from install_mpm.interface import (
     InterfacePoints,
     StepAxes,
     facet_rule,
-    frames,
     global_traction,
     reaction,
     step_axes,
 )
+from install_mpm.interface_axes import frames
 from install_mpm.kernels.interface_force import evaluate_interface
 from install_mpm.pile import PileMotion, rigid_displacement
 

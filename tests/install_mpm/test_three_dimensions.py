@@ -24,7 +24,7 @@ from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import HenckyElastic, VonMises
 from install_mpm.conventions import Kinematics, rotation_matrix
 from install_mpm.integration_points import IntegrationPoints, empty_trial
-from install_mpm.interface import frames_around_axis
+from install_mpm.interface_axes import frames_around_axis
 from install_mpm.kernels.carry import nearest_integration_point
 from install_mpm.kernels.cell_records import CellOptions
 from install_mpm.kernels.equilibrium import evaluate_cells
