@@ -25,15 +25,19 @@ PROGRAMMES = ("release", "compression", "uplift", "lateral")
 FIGURES = {"initial_stiffness": "initial stiffness", "capacity": "capacity at 0.1 D"}
 
 
-def results_of(soil, ratio, turns, directory):
-    """Return the results of a run of all stages as ``summary.json`` holds them."""
+def case_of(soil, ratio, turns):
+    """Return the case of a run: the quick one's without the programmes that have no ratio."""
     case, _ = read_case(SOILS[soil], overrides_of(turns, ratio))
     programmes = tuple(p for p in case.service.programmes if p.name in PROGRAMMES)
-    case = replace(
+    return replace(
         case,
         installation=replace(case.installation, release=True),
         service=replace(case.service, programmes=programmes),
     )
+
+
+def summary_of(case, directory):
+    """Return what ``summary.json`` holds of a case after all stages; what is there is kept."""
     run_case(case, directory, resume=True)
     return json.loads((directory / SUMMARY).read_text())
 
@@ -68,7 +72,7 @@ def main():
     for soil in SOILS:
         for ratio in RATIOS:
             folder = options.output / f"{soil}, advancement ratio {ratio:g}"
-            lines += rows_of(soil, ratio, results_of(soil, ratio, options.turns, folder))
+            lines += rows_of(soil, ratio, summary_of(case_of(soil, ratio, options.turns), folder))
             print("\n".join(lines), flush=True)
     if options.page:
         options.page.write_text("\n".join(lines) + "\n")

@@ -13,6 +13,7 @@ from workflows.directory import INSTALL_KEYS
 sys.path.append(str(Path(__file__).parents[2] / "benchmarks"))
 study = importlib.import_module("screw_pile_study")
 ratios = importlib.import_module("screw_pile_ratios")
+beside = importlib.import_module("installed_over_wished")
 
 
 def test_every_run_is_a_valid_case_that_differs_from_the_others():
@@ -85,3 +86,26 @@ def test_torque_and_force_of_two_soils_are_tabled_and_drawn(tmp_path):
     )
     ratios.draw(rows, tmp_path / "ratios.png")
     assert (tmp_path / "ratios.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("soil", beside.SOILS)
+def test_a_pile_beside_the_wished_one_is_released_and_loaded(soil):
+    case = beside.case_of(soil, 0.5, 0.25)
+    assert case.installation.release
+    assert case.installation.phases[0].advancement_ratio == 0.5
+    assert [programme.name for programme in case.service.programmes] == list(beside.PROGRAMMES)
+    assert case.comparison is not None
+
+
+def test_ratios_are_tabled_with_their_range():
+    figures = {
+        "ratio": {"initial_stiffness": 0.9, "capacity": 1.02, "tangent_capacity": 1.0},
+        "ratio_range": {"initial_stiffness": 0.05, "capacity": 0.01, "tangent_capacity": 0.0},
+    }
+    results = {
+        "installation": {"torque_N m": 7.5e3, "crowd_force_N": -23.4e3},
+        "service": dict.fromkeys(beside.PROGRAMMES[1:], figures),
+    }
+    lines = beside.rows_of("clay", 0.5, {"results": results})
+    assert lines[1] == "| clay | 0.5 | 7.5 | -23 | uplift | 0.900 ± 0.050 | 1.020 ± 0.010 |"
+    assert len(lines) == 3
