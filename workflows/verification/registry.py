@@ -43,6 +43,7 @@ MODULES: tuple[str, ...] = (
     "paper_hencky",
     "paper_penetration",
     "pile_head",
+    "plate_anchor",
     "point_force",
     "rigid_disc",
     "rigid_disc_solid",

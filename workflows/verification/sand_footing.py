@@ -101,7 +101,7 @@ def sand_footing(
     surcharge = unit if strength == Strength.SURCHARGE else 0.0
     settlement = relative_settlement * expected / rigidity_index
     parts = settlement * np.linspace(0.0, 1.0, STEPS + 1) ** 1.5
-    accepted = _push(problem, under_footing, np.diff(parts) * width, surcharge)
+    accepted = push(problem, under_footing, np.diff(parts) * width, surcharge)
     motion = [-step.increment.displacement[under_footing, 1].mean() for step in accepted]
     area = 0.25 * np.pi * width**2 if kinematics == Kinematics.AXISYMMETRIC else 0.5 * width
     loads = np.array([-step.support_reaction[under_footing, 1].sum() for step in accepted])
@@ -146,13 +146,13 @@ def sand_mesh(
     )
 
 
-def _push(
+def push(
     problem: ServiceProblem, under_footing: np.ndarray, settlements: np.ndarray, surcharge: float
 ) -> list[Step]:
     """Return the accepted steps of a footing pushed down by ``settlements`` (step,) in m.
 
-    All nodes are loaded by what holds the undisturbed stress; so the reaction of the footing lacks
-    the surcharge on its area.
+    Negative ones lift it.  A step that does not converge is cut.  All nodes are loaded by what
+    holds the undisturbed stress; so the reaction of the footing lacks the surcharge on its area.
     """
     state = _with_pressure(problem, surcharge)
     external = problem.internal_force(state) if surcharge else problem.gravity(state)

@@ -1,4 +1,4 @@
-"""PB1 and PB3 to PB6: bearing capacity of footings and of a deep cylinder.
+"""PB1, PB3 to PB6 and PC7: bearing capacity of footings, a deep cylinder and a buried plate.
 
 The circle (PB2) is in ``circular_footing``.
 """
@@ -79,3 +79,13 @@ def deep_cylinder_factor(*, adhesion: float) -> float:
     delta = np.arcsin(adhesion)
     half = 0.25 * np.pi - 0.5 * delta
     return np.pi + 2.0 * delta + 4.0 * np.cos(half) * (np.sqrt(2.0) + np.sin(half))
+
+
+def plate_uplift_bound(*, depth_ratio: float, friction_angle: float) -> float:
+    """Return an upper bound of Q / (gamma H A) of a circular plate that is pulled up in sand (PC7).
+
+    N = 1 + 2 (H/D) tan(phi) + 4/3 (H/D)^2 tan^2(phi): the weight of the cone that opens upward by
+    phi from the edge of the plate.  With associated flow the cone rises without work of friction.
+    """
+    slope = depth_ratio * np.tan(friction_angle)
+    return float(1.0 + 2.0 * slope + 4.0 / 3.0 * slope**2)
