@@ -13,7 +13,6 @@ import numpy as np
 from install_mpm.background_mesh import BackgroundMesh
 from install_mpm.cell_fill import CellGeometry, cell_geometry, fill_cells
 from install_mpm.cells import ReferenceCell
-from install_mpm.constitutive import dispatch
 from install_mpm.conventions import Kinematics
 from install_mpm.discretisation import Discretisation, GeostaticGradient, StepStart
 from install_mpm.equilibrium import StepEquilibrium
@@ -23,7 +22,7 @@ from install_mpm.integration_points import CellFill, IntegrationPoints
 from install_mpm.kernels import carry as kernels
 from install_mpm.kernels.update import carry_points
 from install_mpm.material_points import MaterialPoints
-from install_mpm.openings import share_openings
+from install_mpm.point_volumes import exchange_volume, share_openings
 
 
 def give_state(
@@ -200,24 +199,7 @@ def take_state(
         model.materials, trace, trace_gradient, model.has_mean_dilatation,
         model.kinematics == Kinematics.AXISYMMETRIC, updated, status,
     )  # fmt: skip
-    if model.has_mean_dilatation:
-        _keep_specific_volume(points, updated, model.materials)
-    return updated, not status.any()
-
-
-def _keep_specific_volume(
-    points: MaterialPoints, updated: MaterialPoints, materials: dispatch.Materials
-) -> None:
-    """Take what the smoothing added to the elastic volume of each point from its plastic volume.
-
-    The specific volume, the sum of both, then follows the deformation of the point.
-    """
-    before, after = (
-        np.trace(of.elastic_log_strain, axis1=1, axis2=2) - np.log(of.volume_ratio)
-        for of in (points, updated)
-    )
-    for row, column in enumerate(dispatch.log_volume_columns(materials)):
-        here = points.material == row
-        if column >= 0:
-            old = points.state_variables[here, column]
-            updated.state_variables[here, column] = old + before[here] - after[here]
+    is_sound = not status.any()
+    if model.has_mean_dilatation and is_sound:
+        exchange_volume(points, updated, model.materials)
+    return updated, is_sound

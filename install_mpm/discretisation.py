@@ -82,4 +82,4 @@ class StepStart(NamedTuple):
     n_injected: int = 0
     n_merged: int = 0
     closed_volume: float = 0.0
-    """Volume in m3 (in 2D m2, or m3 per radian) of sand's openings that closed; see openings.py."""
+    """Volume in m3 (or m2, m3 per radian) of openings of sand that closed."""

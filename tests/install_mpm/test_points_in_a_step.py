@@ -17,8 +17,8 @@ from install_mpm.ground import Ground
 from install_mpm.location import locate
 from install_mpm.material_points import MaterialPoints
 from install_mpm.mesh_generation import generate_background_mesh
-from install_mpm.openings import share_openings
 from install_mpm.pile_surface import initial_interface, pile_elements
+from install_mpm.point_volumes import share_openings
 from install_mpm.seeding import seed_points
 from install_mpm.soft_terms import cell_options, opening_share, volumetric_strain_under
 from install_mpm.step import LEVEL_FILL, switch_on
@@ -124,6 +124,40 @@ def test_void_ratio_follows_the_volume_of_the_point(make_column, rng):
     assert points.state_variables[:, 2].max() > 0.01  # plastic shear strain
     expected = start + np.log(points.volume_ratio)
     np.testing.assert_allclose(specific_volume(points), expected, atol=1e-13)
+
+
+def test_pressure_evens_out_by_volume(make_column, rng):
+    """Loose sand without pressure beside sand under pressure, at rest: one shrinks, others expand.
+
+    If it kept its volume it would grow in a flow of sand under pressure that expands in its cell.
+    """
+    column = make_column(Ground(unit_weight=18e3, k0=0.5, soil=DENSE_SAND))
+    mesh, points = column.mesh, column.scattered_points(rng)
+    geometry = cell_geometry(mesh, column.cell, Kinematics.PLANE_STRAIN)
+    fill = fill_cells(points, mesh, column.cell, geometry, 0.3)
+    slack = np.flatnonzero(points.cell == 4)[0]
+    strain, state = points.elastic_log_strain.copy(), points.state_variables.copy()
+    taken = -np.trace(strain[slack])
+    state[slack, 0] -= taken  # its specific volume stays
+    strain[slack] = 0.0
+    points = points._replace(elastic_log_strain=strain, state_variables=state)
+    rest = SimpleNamespace(
+        displacement=np.zeros_like(mesh.nodes),
+        trial=SimpleNamespace(cell_volume_ratio=np.ones(len(mesh.cell_nodes))),
+    )
+    updated, _ = take_state(points, mesh, fill, rest, column.model, column.gradient)
+    of_cell, before = (np.bincount(points.cell, each.volume) for each in (updated, points))
+    np.testing.assert_allclose(of_cell, before, rtol=1e-14)
+    change = np.log(updated.volume / points.volume)
+    beside = (points.cell == 4) & (np.arange(len(change)) != slack)
+    assert 0.5 * taken < -change[slack] < taken
+    assert (change[beside] > 0.0).all()
+    np.testing.assert_allclose(change[points.cell != 4], 0.0, atol=1e-12)
+    np.testing.assert_allclose(updated.volume_ratio / points.volume_ratio, np.exp(change))
+    expected = specific_volume(points) + change
+    np.testing.assert_allclose(specific_volume(updated), expected, atol=1e-14)
+    again, _ = take_state(updated, mesh, fill, rest, column.model, column.gradient)
+    np.testing.assert_allclose(again.volume, updated.volume, rtol=1e-12)
 
 
 def specific_volume(points):
