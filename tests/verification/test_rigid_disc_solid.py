@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from workflows.verification.quarter_ground import equal_area, equal_inertia
 from workflows.verification.rigid_disc_solid import PROBLEM
+from workflows.verification.round_ground import equal_area, equal_inertia
 
 pytestmark = pytest.mark.dolfinx
 

@@ -19,15 +19,15 @@ from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held
 from workflows.verification.elastic_pile import ground_and_pile, with_pile
 from workflows.verification.problem import Outcome, Problem, relative
-from workflows.verification.quarter_ground import (
+from workflows.verification.references.piles import lateral_head
+from workflows.verification.round_ground import (
     QUARTERS,
     equal_inertia,
-    quarter_mesh,
-    quarter_solid,
+    round_mesh,
+    round_solid,
     supports,
     surface_within,
 )
-from workflows.verification.references.piles import lateral_head
 from workflows.verification.solid_boundary import nodal_areas
 
 SECTORS = 4
@@ -63,7 +63,7 @@ def pd5(
     )  # fmt: skip
     length = LENGTH * exact.critical_length
     radii = r0 * equal_inertia(4 * SECTORS) * np.array(RADII)
-    mesh = quarter_mesh(quarter_solid(radii, length * np.array(DEPTHS), SECTORS))
+    mesh = round_mesh(round_solid(radii, length * np.array(DEPTHS), SECTORS))
     soils = (HenckyElastic(2.0 * (1.0 + nu) * G, nu), HenckyElastic(Ep, nu))
     free, moved, turned = _free_head(mesh, soils, radii[2], length, H)
     fixed, stiffness = _fixed_head(mesh, soils, radii[2], length)

@@ -17,16 +17,16 @@ from install_mpm.ground import Ground
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held, rigid_motion
 from workflows.verification.problem import Outcome, Problem, relative
-from workflows.verification.quarter_ground import (
+from workflows.verification.references.discs import disc_stiffness
+from workflows.verification.round_ground import (
     QUARTERS,
     Parity,
     equal_area,
-    quarter_mesh,
-    quarter_solid,
+    round_mesh,
+    round_solid,
     supports,
     surface_within,
 )
-from workflows.verification.references.discs import disc_stiffness
 
 SECTORS = 5
 RADII = (
@@ -77,8 +77,8 @@ def pd1(
         exact.vertical, exact.vertical_bonded, exact.horizontal, exact.rocking, exact.torsional,
     )  # fmt: skip
     polygon = R * equal_area(4 * SECTORS)
-    solid = quarter_solid(polygon * np.array(RADII), R * np.array(DEPTHS), SECTORS)
-    mesh = quarter_mesh(solid)
+    solid = round_solid(polygon * np.array(RADII), R * np.array(DEPTHS), SECTORS)
+    mesh = round_mesh(solid)
     on_disc = np.zeros(len(mesh.nodes), dtype=bool)
     on_disc[np.unique(mesh.facet_nodes[surface_within(mesh, polygon)])] = True
     checks, histories = [], []

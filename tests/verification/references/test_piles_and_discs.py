@@ -10,7 +10,7 @@ from workflows.verification.references.discs import (
 )
 from workflows.verification.references.elasticity import mindlin_displacement
 from workflows.verification.references.pile_stiffness import head_stiffness, randolph_wroth
-from workflows.verification.references.piles import broms_short_pile, lateral_head
+from workflows.verification.references.piles import broms_reaction, broms_short_pile, lateral_head
 from workflows.verification.references.thick_cylinder import collapse_pressure, internal_pressure
 
 LOAD = {"pressure": 100e3, "load_radius": 1.0, "youngs_modulus": 10e6, "poissons_ratio": 0.3}
@@ -115,6 +115,17 @@ def test_short_pile(height, capacity):
     f = force / (9.0 * 50e3)
     moment = force * (height + 1.5 + 0.5 * f)
     assert moment == pytest.approx(2.25 * 50e3 * (10.0 - 1.5 - f) ** 2)
+
+
+@pytest.mark.parametrize("height", [0.0, 3.0])
+def test_reaction_on_a_short_pile_balances_the_load(height):
+    clay = {"undrained_shear_strength": 40e3, "diameter": 0.8, "length": 9.0}
+    depth = (np.arange(90_000) + 0.5) * 1e-4
+    reaction = broms_reaction(depth, **clay, load_height=height) * 1e-4
+    force = broms_short_pile(**clay, load_height=height)
+    assert reaction.sum() == pytest.approx(force, rel=1e-3)
+    assert abs(reaction @ (depth + height)) < 1e-3 * force * (clay["length"] + height)
+    assert (reaction[depth < 1.2] == 0.0).all()
 
 
 def test_pile_within_the_dead_zone_is_refused():

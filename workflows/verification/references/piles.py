@@ -99,3 +99,29 @@ def broms_short_pile(
     half = 2.0 * arm + available
     f = np.sqrt(half**2 + available**2) - half
     return 9.0 * undrained_shear_strength * diameter * f
+
+
+def broms_reaction(
+    depth: np.ndarray,
+    *,
+    undrained_shear_strength: float,
+    diameter: float,
+    length: float,
+    load_height: float = 0.0,
+) -> np.ndarray:
+    """Return the reaction of the clay in N/m at ``depth`` (n,) in m at the capacity (PD6).
+
+    It is positive against the load and changes its sign at 1.5 d + f + g / 2; see
+    ``broms_short_pile``, also for what is raised.
+    """
+    strongest = 9.0 * undrained_shear_strength * diameter
+    f = (
+        broms_short_pile(
+            undrained_shear_strength=undrained_shear_strength, diameter=diameter, length=length,
+            load_height=load_height,
+        )
+        / strongest
+    )  # fmt: skip
+    turn = 0.5 * (1.5 * diameter + f + length)
+    reaction = np.where(depth < turn, strongest, -strongest)
+    return np.where(depth < 1.5 * diameter, 0.0, reaction)
