@@ -54,6 +54,7 @@ MODULES: tuple[str, ...] = (
     "scheme_comparison",
     "screw_pile_work",
     "shaft_friction",
+    "short_pile",
     "slab",
     "sliding_block",
     "soil_elements",
