@@ -36,6 +36,10 @@ FACTORISATION_COST = 40
 
 With 13,000 unknowns in space it takes as long as 24 (docs/performance.md), on larger meshes more.
 """
+USUAL_REUSE = 40
+"""Most iterations of GMRES with old factors on large meshes."""
+MANY_UNKNOWNS = 20_000
+"""Unknowns in space from which factors are used again by default."""
 MAX_MULTIGRID = 150
 """Iterations of GMRES with multigrid after which it has failed."""
 
@@ -210,7 +214,15 @@ def make_solver(soil: Forms, numerics: ServiceNumerics) -> CoupledSolver:
     matrix = TangentMatrix(soil.matrix, soil.row_of_dof)
     is_iterative = numerics.solver == "iterative"
     multigrid = Multigrid(matrix, soil.rigid_modes()) if is_iterative else None
-    return CoupledSolver(matrix, multigrid, numerics.max_factor_reuse, soil.partition)
+    return CoupledSolver(matrix, multigrid, _max_reuse(soil, numerics), soil.partition)
+
+
+def _max_reuse(soil: Forms, numerics: ServiceNumerics) -> int:
+    """Return what is given, or what pays on a mesh of this size."""
+    if numerics.max_factor_reuse is not None:
+        return numerics.max_factor_reuse
+    is_large = soil.mesh.nodes.shape[1] == 3 and soil.n_dofs >= MANY_UNKNOWNS
+    return USUAL_REUSE if is_large else 0
 
 
 def _border_of(system: CoupledSystem, inverse: ApproximateInverse) -> _Border:
