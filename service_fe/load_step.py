@@ -230,17 +230,17 @@ class LoadStep:
         has_one = any(bool(jump.any()) for jump in self._jumps(trial))
         return self.model.soil.partition.agreed(has_one)
 
-    def search_direction(self, trial: Trial, forcing: float) -> np.ndarray:
+    def search_direction(self, trial: Trial) -> np.ndarray:
         """Return the Newton correction (n_dofs + n_motions,) of soil displacement and motion s.
 
-        ``forcing`` is the share of its right-hand side that it may leave as residual.
+        It is as exact as ``linear_tolerance`` asks.
         """
         soil_jump, motion = self._jumps(trial)
         system = self._system(trial, soil_jump, motion)
         size = np.hypot(np.linalg.norm(system.soil_force), np.linalg.norm(system.pile_force))
         reference = self._reference(trial.soil_residual, trial.pile_force)
         soil, motion[self.control.is_loaded] = self.model.solver.solve(
-            system, linear_tolerance(forcing, float(size), reference, self.model.numerics.tolerance)
+            system, linear_tolerance(float(size), reference, self.model.numerics.tolerance)
         )
         return np.concatenate([soil + soil_jump, motion])
 

@@ -8,7 +8,7 @@ law it is a heuristic.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -20,34 +20,25 @@ SLOPE_WANTED = 0.3
 MAX_LINE_SEARCH = 8
 SMALLEST_STEP = 1e-3
 
-LOOSEST = 0.01
-"""Largest share of its right-hand side that a linear system may leave as residual."""
-FORCING = 0.9
-"""That share, over the square of what the last iteration left of the out-of-balance force."""
+LOOSEST = 1e-3
+"""Largest residual that a linear system may keep, over its right-hand side."""
+FORCING = 0.1
+"""Residual that it may keep, over the square of the relative right-hand side."""
 TIGHTEST = 0.02
 """Residual of a linear system, over the tolerance of the step, below which there is no use."""
 
 
-def forcing_term(residuals: Sequence[float]) -> float:
-    """Return the share of its right-hand side that the next linear system may leave as residual.
-
-    ``residuals`` are those before each iteration so far, without the one that lifts the prescribed
-    motions.  A share in proportion to the square of what the last iteration left keeps the
-    convergence quadratic, and where that is far away no work is lost on systems that will not be
-    the last (Eisenstat and Walker 1996, choice 2).
-    """
-    if len(residuals) < 2:
-        return LOOSEST
-    return min(LOOSEST, FORCING * (residuals[-1] / residuals[-2]) ** 2)
-
-
-def linear_tolerance(forcing: float, size: float, reference: float, tolerance: float) -> float:
+def linear_tolerance(size: float, reference: float, tolerance: float) -> float:
     """Return the residual in N to which the linear system of an iteration is solved.
 
     ``size`` is the norm of its right-hand side, ``reference`` the force by which Newton's method
-    measures its residuals, both in N; ``tolerance`` is what these have to come to.
+    measures its residuals, both in N; ``tolerance`` is what these have to come to.  A residual in
+    proportion to the square of the size keeps the convergence quadratic (Eisenstat and Walker
+    1996).
     """
-    return max(forcing * size, TIGHTEST * tolerance * reference)
+    if reference <= 0.0:
+        return tolerance * size
+    return max(size * min(FORCING * size / reference, LOOSEST), TIGHTEST * tolerance * reference)
 
 
 class StepNotConvergedError(RuntimeError):
@@ -84,7 +75,7 @@ class Solution(NamedTuple, Generic[TrialT]):
 
 def solve_newton(
     start: TrialT,
-    search_direction: Callable[[TrialT, float], np.ndarray],
+    search_direction: Callable[[TrialT], np.ndarray],
     evaluate: Callable[[TrialT, np.ndarray, float], TrialT],
     needs_first_iteration: bool,
     tolerance: float,
@@ -98,7 +89,7 @@ def solve_newton(
     start
         Trial at the first guess.
     search_direction
-        Newton correction of all unknowns at (trial, ``forcing_term``).
+        Newton correction of all unknowns at a trial.
     evaluate
         Trial at (trial, direction, step length).
     needs_first_iteration
@@ -119,8 +110,7 @@ def solve_newton(
         is_lifting = needs_first_iteration and iteration == 0
         if residuals[-1] <= tolerance and not is_lifting:
             return Solution(trial, tuple(residuals))
-        forcing = forcing_term(residuals[int(needs_first_iteration) :])
-        direction = search_direction(trial, forcing)
+        direction = search_direction(trial)
         full = evaluate(trial, direction, 1.0)
         trial = full if is_lifting else _line_search(trial, full, direction, evaluate, agree)
         residuals.append(trial.relative_residual)

@@ -168,8 +168,8 @@ class ServiceNumerics:
     max_factor_reuse: Annotated[int | None, Ge(0), Le(200)] = None
     """Most iterations of GMRES with the factors of an iteration before; 0: factorise each time.
 
-    By default 40 in space from 20,000 unknowns on, where it takes a third of the time, else 0: the
-    end of Newton's method is then the exact quadratic one.
+    By default 40 in space from 20,000 unknowns on, else 0: the end of Newton's method is then the
+    exact quadratic one.
     """
 
 

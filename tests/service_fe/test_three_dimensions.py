@@ -221,7 +221,7 @@ def test_tangent_of_the_complete_model_against_finite_differences(problem, undis
     unknowns = Unknowns(1e-4 * random.normal(size=free.shape) * free, 1e-3 * random.normal(size=6))
     trial = step.evaluate(unknowns)
     problem.model.solver.forget()
-    direction = step.search_direction(trial, 0.0)
+    direction = step.search_direction(trial)
     size = 1e-6
     ahead, behind = (step._evaluate_along(trial, direction, s * size) for s in (1.0, -1.0))
     slope = (ahead.out_of_balance - behind.out_of_balance) / (2.0 * size)
