@@ -31,11 +31,17 @@ from service_fe.linear_solver import (
 from service_fe.options import ServiceNumerics
 from service_fe.partition import ALONE, Partition
 
-FACTORISATION_COST = 40
-"""Iterations of GMRES that a factorisation counts as.
+FACTORISATION_COST = 24
+"""Iterations of GMRES that a factorisation counts as, on meshes of up to ``COST_UNKNOWNS``.
 
-With 13,000 unknowns in space it takes as long as 24 (docs/performance.md), on larger meshes more.
+It was measured in space with 13,000 unknowns. With 96,000 it takes as long as 57
+(docs/performance.md), so it is taken to grow with the root of their number.
 """
+COST_UNKNOWNS = 15_000
+USUAL_REUSE = 40
+"""Most iterations of GMRES with old factors on large meshes."""
+MANY_UNKNOWNS = 20_000
+"""Unknowns in space from which factors are used again by default."""
 MAX_MULTIGRID = 150
 """Iterations of GMRES with multigrid after which it has failed."""
 
@@ -110,6 +116,8 @@ class CoupledSolver:
         self.matrix, self.work, self._partition = matrix, Work(), partition
         self._multigrid, self._factors = multigrid, LUFactors(matrix)
         self._max_reuse = max_reuse
+        growth = np.sqrt(len(matrix.row_of_dof) / COST_UNKNOWNS)
+        self._factorisation_cost = FACTORISATION_COST * max(1.0, growth)
         self._border: _Border | None = None
         self._iterations_since: list[int] = []
         """Iterations of GMRES in each solution with the present factors."""
@@ -142,7 +150,7 @@ class CoupledSolver:
         since = self._iterations_since
         if not since or self._max_reuse == 0:
             return False
-        return since[-1] * len(since) < FACTORISATION_COST + sum(since)
+        return since[-1] * len(since) < self._factorisation_cost + sum(since)
 
     def _with_old_factors(self, system: CoupledSystem, tolerance: float) -> np.ndarray | None:
         border = self._border
@@ -210,7 +218,15 @@ def make_solver(soil: Forms, numerics: ServiceNumerics) -> CoupledSolver:
     matrix = TangentMatrix(soil.matrix, soil.row_of_dof)
     is_iterative = numerics.solver == "iterative"
     multigrid = Multigrid(matrix, soil.rigid_modes()) if is_iterative else None
-    return CoupledSolver(matrix, multigrid, numerics.max_factor_reuse, soil.partition)
+    return CoupledSolver(matrix, multigrid, max_reuse(soil, numerics), soil.partition)
+
+
+def max_reuse(soil: Forms, numerics: ServiceNumerics) -> int:
+    """Return the most iterations of GMRES with old factors: as given, or what pays on the mesh."""
+    if numerics.max_factor_reuse is not None:
+        return numerics.max_factor_reuse
+    is_large = soil.mesh.nodes.shape[1] == 3 and soil.n_dofs >= MANY_UNKNOWNS
+    return USUAL_REUSE if is_large else 0
 
 
 def _border_of(system: CoupledSystem, inverse: ApproximateInverse) -> _Border:

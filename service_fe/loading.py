@@ -144,6 +144,11 @@ def mode_of(programme: Programme, dim: int) -> Mode:
     return Mode(frame, is_loaded, measure)
 
 
+def shows_moment(programme: Programme) -> bool:
+    """Return whether the curve of a programme shows a rotation and its moment or torque."""
+    return bool(mode_of(programme, 3).measure[TILT_ACROSS:].any())
+
+
 def _leading(programme: Load | Cycles) -> str:
     """Return the component that the curve of a programme driven by loads shows."""
     if isinstance(programme, Cycles):

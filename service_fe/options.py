@@ -165,10 +165,11 @@ class ServiceNumerics:
     """Viscous over elastic stress with which a step that does not converge is settled; 0: never."""
     solver: Literal["mumps", "iterative"] = "mumps"
     """Of the linear systems: LU factors, or multigrid with MUMPS where that fails."""
-    max_factor_reuse: Annotated[int, Ge(0), Le(200)] = 0
+    max_factor_reuse: Annotated[int | None, Ge(0), Le(200)] = None
     """Most iterations of GMRES with the factors of an iteration before; 0: factorise each time.
 
-    40 saves a third of the time and more, and the end of Newton's method is not quite quadratic.
+    By default 40 in space from 20,000 unknowns on, else 0: the end of Newton's method is then the
+    exact quadratic one.
     """
 
 

@@ -6,7 +6,7 @@ A state is a value: programmes that start from the same state are independent br
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from service_fe.loading import (
     Mode,
     contradiction,
     imposed_steps,
+    shows_moment,
     start_of,
 )
 from service_fe.newton import StepNotConvergedError
@@ -37,11 +38,12 @@ class ServiceError(RuntimeError):
 
 
 class ServiceProgress(NamedTuple):
-    """What an observer is told after each step; whole pile, positive downward."""
+    """What an observer is told after each step; displacement and load as in ``results.Curve``."""
 
     programme: str
     step: int
     n_steps: int
+    load_unit: Literal["N", "N m"]
     displacement: float
     head_load: float
     iterations: int
@@ -171,7 +173,8 @@ def run_programme(
         work = problem.model.solver.work.since(before)
         rows.append(_row(problem, rows[-1], imposed.mode, taken, work))
         along.add(state, displacement, rows[-1].motion)
-        observe(ServiceProgress(programme.name, number, len(steps), *rows[-1][:4]))
+        unit: Literal["N", "N m"] = "N m" if shows_moment(programme) else "N"
+        observe(ServiceProgress(programme.name, number, len(steps), unit, *rows[-1][:4]))
     return ProgrammeResult(
         programme, _curve(rows), Displacement(displacement), state, along.result()
     )

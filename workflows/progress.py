@@ -18,7 +18,7 @@ from rich.progress import (
 )
 
 from workflows.ranks import is_first
-from workflows.report_units import FORCE_UNIT
+from workflows.report_units import shown
 
 if TYPE_CHECKING:
     from workflows.case import AnyCase
@@ -40,13 +40,14 @@ def service_observer(case: AnyCase, advance: Advance) -> Callable[[Any], None]:
     Each programme counts as 100, because its number of steps is not known before it starts.
     """
     assert case.service is not None
-    n_programmes, unit = len(case.service.programmes), FORCE_UNIT[case.kinematics]
+    n_programmes = len(case.service.programmes)
     finished = 0
 
     def observe(progress: Any) -> None:
         nonlocal finished
         share = 100 * progress.step // progress.n_steps
-        note = f"{progress.programme}, {progress.head_load / 1e3:.0f} {unit}"
+        load = shown(progress.head_load, progress.load_unit, 3, case.kinematics)
+        note = f"{progress.programme}, {load}"
         advance((100 * finished + share) // n_programmes, 100, note)
         finished += progress.step == progress.n_steps
 

@@ -12,8 +12,8 @@ from install_mpm.conventions import Kinematics
 from install_mpm.geostatic import named_state
 from install_mpm.ground import GroundProfile
 from install_mpm.state_file import InstalledState
-from service_fe.loading import RELEASED
-from service_fe.options import Displace, Lateral, Load, Programme, Release, Rotate
+from service_fe.loading import RELEASED, shows_moment
+from service_fe.options import Displace, Lateral, Load, Programme, Release
 from service_fe.results import (
     CAPACITY_DISPLACEMENT,
     Curve,
@@ -63,7 +63,7 @@ class Shown(NamedTuple):
 def shown_as(programme: Programme, kinematics: Kinematics) -> Shown:
     """Return factor and labels of the curve of a programme; loads are shown in thousands."""
     force = FORCE_UNIT[kinematics]
-    if isinstance(programme, Rotate):
+    if shows_moment(programme):
         return Shown(180.0 / np.pi, "rotation (°)", f"moment ({force} m)")
     if isinstance(programme, Lateral) or getattr(programme, "component", "") == "lateral":
         return Shown(1e3, "displacement of the head, sideways (mm)", f"lateral load ({force})")

@@ -1,9 +1,11 @@
 """Soil and loaded motions together: every way to the solution gives the dense one."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from service_fe.coupled_solver import CoupledSolver, CoupledSystem, Work
+from service_fe.coupled_solver import CoupledSolver, CoupledSystem, Work, max_reuse
 from service_fe.linear_solver import FactorisationError, Multigrid, TangentMatrix
 from service_fe.options import Displace, Release, ServiceNumerics
 from service_fe.soil_forms import SoilForms
@@ -133,6 +135,22 @@ def test_pile_without_soil_has_come_loose(soil, fixed):
     loose = system._replace(soil_pile=nothing.T, pile_soil=nothing, pile=np.zeros((2, 2)))
     with pytest.raises(FactorisationError, match="come loose"):
         solver.solve(loose, 1e-7)
+
+
+@pytest.mark.parametrize(
+    ("dim", "n_nodes", "given", "reuse"),
+    [
+        (3, 7000, None, 40),
+        (3, 6000, None, 0),
+        (2, 20_000, None, 0),
+        (3, 7000, 0, 0),
+        (2, 10, 15, 15),
+    ],
+)
+def test_factors_are_used_again_where_that_pays_or_as_given(dim, n_nodes, given, reuse):
+    nodes = np.zeros((n_nodes, dim))
+    soil = SimpleNamespace(mesh=SimpleNamespace(nodes=nodes), n_dofs=nodes.size)
+    assert max_reuse(soil, ServiceNumerics(max_factor_reuse=given)) == reuse
 
 
 @pytest.mark.parametrize("solver", ["mumps", "iterative"])

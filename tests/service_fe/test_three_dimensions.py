@@ -264,7 +264,11 @@ def test_programmes_in_space(problem, undisturbed):
         Cycles("cycles", "lateral", amplitude=1e3, cycles=2, steps=1, start="combined"),
     )
     rebound = np.array([0.0, 0.0, 2e-3, 0.0, 0.0, 0.004])
-    result = run(problem, undisturbed, programmes, rebound=rebound)
+    told = []
+    result = run(problem, undisturbed, programmes, told.append, rebound=rebound)
+    assert {entry.programme for entry in told if entry.load_unit == "N m"} == {
+        "on", "torsion", "moment",
+    }  # fmt: skip
     curve = {entry.programme.name: entry.curve for entry in result.programmes}
     scale = np.abs(curve["compression"].load).max()
     np.testing.assert_allclose(curve["release"].load[-1], np.zeros(6), atol=1e-6 * scale)
