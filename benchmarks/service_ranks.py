@@ -3,8 +3,8 @@
     python benchmarks/service_ranks.py [--size M] [--far M]
     mpirun -n 2 python benchmarks/service_ranks.py [--size M] [--far M]
 
-The pile of ``cases/screwpile_quick.toml``, wished in place in its clay, goes sideways by 20 mm in
-two steps. The first peak holds Python, the libraries and the model, the last one also the factors.
+The pile of ``cases/screwpile_quick.toml``, wished in place in its clay, goes sideways by 10 mm in
+one step. The first peak holds Python, the libraries and the model, the last one also the factors.
 CPU seconds are those of the load steps, waiting included; load and stress are there to be compared.
 """
 
@@ -28,7 +28,7 @@ from workflows.placed import pile_at_end, service_problem
 from workflows.ranks import on_first
 
 CASE = Path(__file__).parent.parent / "cases" / "screwpile_quick.toml"
-PUSH = Lateral("lateral", 0.02, 0.01, height=0.5, start="equilibrated", first_step_halvings=0)
+PUSH = Lateral("lateral", 0.01, 0.01, height=0.5, start="equilibrated", first_step_halvings=0)
 
 
 def peak_memory() -> float:
@@ -40,7 +40,7 @@ def main() -> None:
     """Print the peaks of all ranks, and what they found."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--size", default="0.1", help="of the elements at the plate in m")
-    parser.add_argument("--far", default="0.6", help="of the elements far away in m")
+    parser.add_argument("--far", default="0.5", help="of the elements far away in m")
     arguments = parser.parse_args()
     case, _ = read_case(
         CASE,
