@@ -140,8 +140,11 @@ IN_THE_PLANE = (Release, Displace)
 class DeformablePile:
     """Elasticity of a pile that is meshed inside; without it the pile is rigid."""
 
-    youngs_modulus: Annotated[float, Unit("Pa"), Gt(0)]
-    """Of the solid section: that of a tube is E of the steel times its share of EI."""
+    youngs_modulus: Annotated[float, Unit("Pa"), Gt(0), Le(1e13)]
+    """Of the solid section: that of a tube is E of the steel times its share of EI.
+
+    Beyond 10 TPa, 50 times steel, the round-off of its forces exceeds the tolerance of the steps.
+    """
     poissons_ratio: Annotated[float, Ge(0), Lt(0.5)] = 0.3
     contact: Literal["interface", "bonded"] = "interface"
     """The interface of the rigid pile, or the soil sticks to the pile."""

@@ -36,11 +36,13 @@ def along_pile(service: ServiceResult, wished: ServiceResult, name: str) -> Figu
     """Return profiles at the end of a programme, and p-y curves, of both models.
 
     Changes since the start of the programme, in the direction of the load.  What a pile does not
-    have, a rigid one shear force and bending moment, is left out.
+    have is left out: a rigid one shear force and bending moment, a bonded one p.
     """
     first = service.programme(name)
     profiles = [entry for entry in PROFILES if np.isfinite(in_direction(first, entry[0])[-1]).any()]
-    figure, axes = panels(1, len(profiles) + 1, 2.5 * (len(profiles) + 1), 4.0)
+    has_py = "reaction" in [field for field, _, _ in profiles]
+    n_panels = len(profiles) + has_py
+    figure, axes = panels(1, n_panels, 2.5 * n_panels, 4.0)
     for model in (service, wished):
         entry = model.programme(name)
         along = entry.along
@@ -49,14 +51,16 @@ def along_pile(service: ServiceResult, wished: ServiceResult, name: str) -> Figu
         for here, (field, factor, _) in zip(axes[0], profiles, strict=False):
             values = factor * in_direction(entry, field)[-1]
             here.plot(values, along.height, color=colour, label=label)
-        _draw_py(axes[0, -1], entry, along, colour)
+        if has_py:
+            _draw_py(axes[0, -1], entry, along, colour)
     for here, (_, _, text) in zip(axes[0], profiles, strict=False):
         here.set(xlabel=text)
         grid(here)
     axes[0, 0].set(ylabel="z (m)")
     axes[0, 0].legend()
-    axes[0, -1].set(xlabel="y (mm)", ylabel="p (kN/m)", title="p-y curves")
-    grid(axes[0, -1])
+    if has_py:
+        axes[0, -1].set(xlabel="y (mm)", ylabel="p (kN/m)", title="p-y curves")
+        grid(axes[0, -1])
     return figure
 
 
@@ -75,8 +79,6 @@ def _draw_py(here: Any, entry: ProgrammeResult, along: AlongPile, colour: str) -
     levels = np.unique(np.linspace(1, len(along.height) - 1, N_DEPTHS).round().astype(int))[::-1]
     y, p = 1e3 * in_direction(entry, "deflection"), -1e-3 * in_direction(entry, "reaction")
     for number, level in enumerate(levels):
-        if not np.isfinite(p[:, level]).all():
-            continue  # soil that sticks to the pile
         share = 0.35 + 0.65 * (number + 1) / len(levels)
         here.plot(y[:, level], p[:, level], color=colour, alpha=share)
         here.annotate(

@@ -116,7 +116,8 @@ SERVICE_CAPTIONS = {
     "along": """what the pile feels along its axis at the end, in the direction of the load:
         deflection, force p of the soil per length against the load, and of a deformable pile shear
         force and bending moment from the stress in its sections. Right: p over the deflection y at
-        some levels, darker with the depth. All are changes since the start of the programme.""",
+        some levels, darker with the depth; a bonded pile has no p. All are changes since the start
+        of the programme.""",
     "cycles": """what the cycles leave behind. Tilt of the pile in the direction of the load, and
         displacement of the point of load, since the start of the packet: at the mean load at the
         end of each cycle (dots), and at the peaks of the load (dashed).""",

@@ -1,4 +1,4 @@
-"""Results of the quick case, computed once for all tests of this folder."""
+"""Results of the quick case and a tiny screw pile, computed once for all tests of this folder."""
 
 import shutil
 from pathlib import Path
@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 
 from workflows.case import read_case
-from workflows.runner import run_case
+from workflows.runner import run_case, run_from_case
 
 QUICK = Path(__file__).parents[2] / "cases" / "jacked_pile_clay_quick.toml"
+TINY_SCREW = Path(__file__).parent / "tiny_screw.toml"
 
 
 @pytest.fixture(scope="session")
@@ -24,3 +25,12 @@ def quick_results(tmp_path_factory):
 def results_copy(quick_results, tmp_path):
     """A copy of the finished run that a test may change."""
     return Path(shutil.copytree(quick_results, tmp_path / "results"))
+
+
+@pytest.fixture(scope="session")
+def installed_screw(tmp_path_factory):
+    """The tiny screw pile, installed; not to be changed."""
+    directory = tmp_path_factory.mktemp("screw") / "results"
+    case, _ = read_case(TINY_SCREW)
+    run_from_case("install", case, directory)
+    return directory

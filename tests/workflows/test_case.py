@@ -112,6 +112,7 @@ def test_a_deformable_pile_is_a_table_of_the_service_stage():
     for wrong, words in (
         ("service.pile.contact=glued", 'must be one of "interface", "bonded"'),
         ("service.pile.youngs_modulus=0 GPa", "must be > 0"),
+        ("service.pile.youngs_modulus=2e16 Pa", "<= 1e+13"),
         ("service.pile.poissons_ratio=0.5", ">= 0 and < 0.5"),
     ):
         with pytest.raises(CaseError, match=re.escape(words)):
