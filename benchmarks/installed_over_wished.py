@@ -1,9 +1,9 @@
-"""Installed over wished in place: stiffness and capacity in clay and sand, at two advances.
+"""Installed over wished in place: stiffness and capacity of a screw pile at two advances.
 
     python benchmarks/installed_over_wished.py -o DIR [--turns 0.25] [--page FILE.md]
 
-The piles of the two quick cases are screwed in at the advance of their pitch and at half of it,
-handed over, and loaded in compression, uplift and sideways, beside the same piles wished in place.
+The pile of the quick case in clay is screwed in at the advance of its pitch and at half of it,
+handed over, and loaded in compression, uplift and sideways, beside the same pile wished in place.
 Each run makes a repeat with smaller finite elements and one with another transfer of the state: the
 range of a ratio is the larger of what they differ by. One run after the other, each in a folder of
 its own in DIR; stages that are there are not repeated.
@@ -20,6 +20,8 @@ from workflows.case import read_case
 from workflows.directory import SUMMARY
 from workflows.runner import run_case
 
+IN_SERVICE = ("clay",)
+"""Soils of the quick cases; sand in space does not converge in service yet (docs/service.md)."""
 RATIOS = (1.0, 0.5)
 PROGRAMMES = ("release", "compression", "uplift", "lateral")
 FIGURES = {"initial_stiffness": "initial stiffness", "capacity": "capacity at 0.1 D"}
@@ -69,7 +71,7 @@ def main():
         + " | ".join(FIGURES.values()) + " |",
         "|---|--:|--:|--:|---|--:|--:|",
     ]  # fmt: skip
-    for soil in SOILS:
+    for soil in IN_SERVICE:
         for ratio in RATIOS:
             folder = options.output / f"{soil}, advancement ratio {ratio:g}"
             lines += rows_of(soil, ratio, summary_of(case_of(soil, ratio, options.turns), folder))
