@@ -116,7 +116,7 @@ def _synthetic_figures(evidence: Evidence) -> dict[str, Figure]:
 def _distance_figures(state_map: StateMap) -> dict[str, Figure]:
     distance = state_map.relative_distance[np.isfinite(state_map.relative_distance)]
     far = state_map.geostatic_share > 0.0
-    what = "distance to the nearest material point over its size"
+    what = "distance to the nearest material point over the size of those around"
     return {
         "nearest_distance_median": Figure(float(np.median(distance)), "", f"{what}, median"),
         "nearest_distance_p99": Figure(

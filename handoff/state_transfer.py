@@ -17,7 +17,7 @@ from handoff.transfer import TransferWeights, least_squares_weights, transferred
 from install_mpm.conventions import vertical_axis
 from install_mpm.geostatic import reference_state
 from install_mpm.ground import GroundProfile, material_at
-from install_mpm.material_points import MaterialPoints, cauchy_stress, plane_area, point_sizes
+from install_mpm.material_points import MaterialPoints, cauchy_stress, plane_area
 from install_mpm.state_file import InstalledState
 
 FALLBACK_FROM = 2.0
@@ -31,9 +31,10 @@ class StateMap(NamedTuple):
 
     weights: TransferWeights
     relative_distance: np.ndarray
-    """Distance (n_q,) to the nearest visible material point over its size.
+    """Distance (n_q,) to the nearest visible material point over the size of the points around.
 
-    That is the square root of its area, or the cube root of its volume.
+    That is the square root of their mean area, or the cube root of their mean volume: splitting
+    leaves points of next to no volume, whose own size tells nothing.
     """
     geostatic_share: np.ndarray
     """Share (n_q,) of the geostatic state: 0 but for targets far from every material point."""
@@ -55,9 +56,10 @@ def state_map(
     weights = least_squares_weights(
         points.position, measure, targets, options.neighbours, placed.obstacle()
     )
+    size = measure[weights.neighbours].mean(axis=1) ** (1.0 / targets.shape[1])
+    relative_distance = weights.distance / size
     if options.transfer == "nearest":
         weights = nearest_weights(weights)
-    relative_distance = weights.distance / point_sizes(points, placed.kinematics)[weights.nearest]
     share = (relative_distance - FALLBACK_FROM) / (FALLBACK_FULL - FALLBACK_FROM)
     return StateMap(weights, relative_distance, np.clip(share, 0.0, 1.0))
 

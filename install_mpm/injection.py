@@ -17,6 +17,13 @@ from install_mpm.geostatic import change_with_height
 from install_mpm.integration_points import CellFill
 from install_mpm.material_points import MaterialPoints
 
+LEAST_SHARE = 1e-3
+"""Volume of a point over that of its sub-region below which it is not split.
+
+Where soil flows through a sub-region without a point of it staying there, what is split off leaves
+in each step, and its donor would be halved without end.  The sub-region takes the mean of its cell.
+"""
+
 
 def inject(
     points: MaterialPoints,
@@ -29,8 +36,8 @@ def inject(
     """Return the points with one more at every empty integration point of an interior cell.
 
     The new point is split off the largest point of the cell, or of a neighbour where the cell is
-    empty: mass and volume are conserved exactly, and the state is moved with the geostatic
-    gradient.
+    empty, unless that is too small: mass and volume are conserved exactly, and the state is moved
+    with the geostatic gradient.
     """
     if not fill.is_interior.any():
         return points
@@ -44,6 +51,8 @@ def inject(
         if len(donors) == 0:
             continue
         donor = donors[np.argmax(volume[donors])]
+        if volume[donor] < LEAST_SHARE * geometry.integration_volume[c, q]:
+            continue
         volume[donor] /= 2.0
         split.append((donor, c, q))
     return _split(points, np.array(split, dtype=np.int64).reshape(-1, 3), mesh, cell, gradient)

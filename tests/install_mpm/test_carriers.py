@@ -13,7 +13,7 @@ from install_mpm.constitutive import dispatch
 from install_mpm.conventions import GRAVITY, Kinematics
 from install_mpm.geostatic import elastic_strain_of, geostatic_gradient
 from install_mpm.ground import geostatic_stress
-from install_mpm.injection import inject, merge
+from install_mpm.injection import LEAST_SHARE, inject, merge
 from install_mpm.kernels.carry import body_force, nearest_integration_point
 from install_mpm.material_points import MaterialPoints
 from install_mpm.seeding import seed_points
@@ -352,6 +352,20 @@ def test_a_point_that_is_split_again_is_halved_again(mesh, clay_ground, rng):
         np.testing.assert_array_equal(parts, whole * np.array([0.25, 0.5, 0.25]))
         others = getattr(enriched, name)[enriched.cell != inner]
         np.testing.assert_array_equal(others, getattr(points, name)[~here])
+
+
+def test_a_crumb_is_not_split(mesh, clay_ground, rng):
+    """Soil that flows through an empty sub-region would else halve its donor in every step."""
+    points = scattered(mesh, clay_ground, rng)
+    centre = mesh.nodes[mesh.cell_nodes[:, :3]].mean(axis=1)
+    inner = np.linalg.norm(centre - [1.0, -1.5], axis=1).argmin()
+    is_left = (points.cell != inner) | (sub_region_of(points) == 0)
+    points = kept(points, is_left)
+    region = cell_geometry(mesh, CELL, Kinematics.PLANE_STRAIN).integration_volume[inner].min()
+    for share in (0.5, 2.0 * LEAST_SHARE, 0.9 * LEAST_SHARE):
+        volume = np.where(points.cell == inner, share * region, points.volume)
+        enriched = injected(points._replace(volume=volume), mesh, clay_ground)
+        assert (len(enriched.mass) > len(points.mass)) == (share > LEAST_SHARE)
 
 
 @pytest.mark.parametrize("cell_type", [CellType.TRI6, CellType.TET10])

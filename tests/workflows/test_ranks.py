@@ -45,11 +45,15 @@ def on_two_ranks(*arguments):
     return subprocess.run(command, cwd=ROOT, env=clean, capture_output=True, text=True, timeout=900)
 
 
-def assert_close(one, two):
-    """Compare records field by field to 1e-8 of the largest value; what one has not, none has."""
+STRESS_AT_A_POINT = 1e-6
+"""Of the state of a screw pile: steps end at 1e-9 of all loads, which a point may show more of."""
+
+
+def assert_close(one, two, tolerance=1e-8):
+    """Compare records field by field, to the largest value; what one has not, none has."""
     for name, first, second in zip(one._fields, one, two, strict=True):
         scale = np.abs(np.nan_to_num(first)).max(initial=0.0)
-        np.testing.assert_allclose(second, first, rtol=0, atol=1e-8 * scale, err_msg=name)
+        np.testing.assert_allclose(second, first, rtol=0, atol=tolerance * scale, err_msg=name)
 
 
 def assert_same_certificate(one, two):
@@ -60,7 +64,7 @@ def assert_same_certificate(one, two):
     assert second == pytest.approx(first, rel=1e-8, abs=1e-10)
 
 
-def assert_same_service(one, two, file):
+def assert_same_service(one, two, file, of_state=1e-8):
     """Compare the curves of all programmes, their last states, and what the pile feels."""
     results = [read_service_result(path / file) for path in (one, two)]
     for alone, together in zip(*(result.programmes for result in results), strict=True):
@@ -68,7 +72,7 @@ def assert_same_service(one, two, file):
             first, second = getattr(alone.curve, name), getattr(together.curve, name)
             scale = np.abs(first).max()
             np.testing.assert_allclose(second, first, rtol=0, atol=1e-8 * scale, err_msg=name)
-        assert_close(alone.state, together.state)
+        assert_close(alone.state, together.state, of_state)
         assert (alone.along is None) == (together.along is None)
         if alone.along is not None:
             assert_close(alone.along, together.along)
@@ -84,14 +88,14 @@ def together(stage, command, *arguments):
     assert len(re.findall(rf"{stage} .*: [\d.]+ s\b", done.stdout)) == 1
 
 
-def hand_over_and_serve(one, two):
+def hand_over_and_serve(one, two, of_state=1e-8):
     """Hand over and serve in ``one`` on one rank and in ``two`` on two; compare the results."""
     for stage, command in (("hand_off", "handoff"), ("serve", "serve")):
         run_from_files(stage, one)
         together(stage, command, two)
     assert_same_certificate(one, two)
     assert_close(*(read_handed_off_state(path / HANDED_OFF).state for path in (one, two)))
-    assert_same_service(one, two, SERVICE)
+    assert_same_service(one, two, SERVICE, of_state)
 
 
 @pytest.mark.slow
@@ -106,10 +110,10 @@ def test_two_ranks_take_a_screw_pile_to_the_end_of_service(installed_screw, pile
     case, _ = read_case(one / CASE, STEEL if pile == "steel" else ())
     for directory in (one, two):
         (directory / CASE).write_text(case_text(case), encoding="utf-8")
-    hand_over_and_serve(one, two)
+    hand_over_and_serve(one, two, STRESS_AT_A_POINT)
     run_from_case("wished", case, one)
     together("wished", "wished", two / CASE, "-o", two)
-    assert_same_service(one, two, WISHED_SERVICE)
+    assert_same_service(one, two, WISHED_SERVICE, STRESS_AT_A_POINT)
 
 
 def test_error_of_all_ranks_is_said_once_with_status_2(tmp_path):
