@@ -19,7 +19,7 @@ from service_fe.axisymmetric_forms import AxisymmetricForms
 from service_fe.coupled_solver import CoupledSolver, CoupledSystem
 from service_fe.interface_forms import InterfaceForms, InterfaceResponse
 from service_fe.linear_solver import FactorisationError
-from service_fe.material_map import SoilResponse, elastic_tangent, soil_response
+from service_fe.material_map import SoilResponse, soil_response, viscous_tangent
 from service_fe.newton import StepNotConvergedError, linear_tolerance, solve_newton
 from service_fe.options import ServiceNumerics
 from service_fe.rigid_pile import PileControl, frame_of
@@ -70,6 +70,8 @@ class Step(NamedTuple):
     """Forces (node, dim) in N of the supports on the soil; zero at free nodes."""
     residuals: tuple[float, ...]
     """Relative out-of-balance force before each iteration and at the end."""
+    viscous_share: float
+    """Nodal forces of the viscous stress over the same reference; zero without damping."""
 
     @property
     def head_load(self) -> float:
@@ -116,7 +118,7 @@ class LoadStep:
         self.model, self.state, self.control = model, state, control
         self._frame = frame_of(control)
         self._own_state = own = model.soil.partition.own(state)
-        self._viscosity = damping * elastic_tangent(model.materials, own) if damping else None
+        self._viscosity = damping * viscous_tangent(model.materials, own) if damping else None
         self.support_motion = np.where(model.is_fixed, support_motion, 0.0)
         self.external_force = external_force
         self._fixed_dofs = np.flatnonzero(model.is_fixed)
@@ -172,7 +174,7 @@ class LoadStep:
         soil = soil_response(model.materials, self._own_state, strain)
         stress = soil.stress
         if self._viscosity is not None:
-            stress = stress + np.einsum("qij,qj->qi", self._viscosity, strain)
+            stress = stress + self._viscous_stress(strain)
             soil = soil._replace(tangent=soil.tangent + self._viscosity)
         interface = model.interface.response(
             model.interface_parameters,
@@ -197,6 +199,18 @@ class LoadStep:
             np.concatenate([free_soil.ravel(), loaded_pile]),
             model.soil.partition.agreed(relative),
         )
+
+    def _viscous_stress(self, strain: np.ndarray) -> np.ndarray:
+        return np.einsum("qij,qj->qi", self._viscosity, strain)
+
+    def _viscous_share(self, trial: Trial) -> float:
+        """Return what the viscous stress carries at the free nodes over the reference."""
+        if self._viscosity is None:
+            return 0.0
+        soil = self.model.soil
+        force = soil.internal_force(self._viscous_stress(soil.strain(trial.unknowns.displacement)))
+        carried = float(np.linalg.norm(force[~self.model.is_fixed]))
+        return carried / self._reference(trial.soil_residual, trial.pile_force)
 
     def _reference(self, soil_residual: np.ndarray, pile_force: np.ndarray) -> float:
         """Return external force plus support reaction plus load or reaction of the pile, in N.
@@ -285,7 +299,8 @@ class LoadStep:
             + trial.unknowns.motion[: len(self.state.pile_displacement)],
         )
         reaction = np.where(self.model.is_fixed, trial.soil_residual, 0.0)
-        return Step(state, trial.unknowns, trial.pile_force, reaction, residuals)
+        viscous = self._viscous_share(trial)
+        return Step(state, trial.unknowns, trial.pile_force, reaction, residuals, viscous)
 
 
 def _mean_diagonal(matrix: object) -> float:

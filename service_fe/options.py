@@ -154,8 +154,10 @@ class DeformablePile:
 class ServiceNumerics:
     """Numerical parameters of the service stage; the defaults are explained in docs/method.md."""
 
-    tolerance: Annotated[float, Gt(0), Le(1e-6)] = 1e-9
-    """Out-of-balance force over external force plus reactions."""
+    tolerance: Annotated[float, Gt(0), Le(1e-4)] = 1e-9
+    """Out-of-balance force over external force plus reactions; the equilibration of the hand-over
+    ends at 1e-9 in any case.
+    """
     max_iterations: Annotated[int, Ge(3)] = 20
     max_cuts: Annotated[int, Ge(0)] = 6
     """Times a step may be halved before the run stops."""
@@ -166,6 +168,11 @@ class ServiceNumerics:
     """
     damping: Annotated[float, Ge(0), Le(10)] = 0.0
     """Viscous over elastic stress with which a step that does not converge is settled; 0: never."""
+    viscosity: Annotated[float, Ge(0), Le(1)] = 0.0
+    """Viscous over elastic stress of soil that strains as fast as in a whole step of a programme.
+
+    Sand in space needs some; ``viscous_share`` of the results tells what it carries.
+    """
     solver: Literal["mumps", "iterative"] = "mumps"
     """Of the linear systems: LU factors, or multigrid with MUMPS where that fails."""
     max_factor_reuse: Annotated[int | None, Ge(0), Le(200)] = None

@@ -6,6 +6,8 @@ and returns a new state.  The model satisfies ``handoff.equilibration.Equilibriu
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from handoff.equilibration import EquilibrationError, ReleasedState
@@ -33,6 +35,9 @@ from service_fe.load_step import LoadStep, Model, Step, Unknowns
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
 from service_fe.rigid_pile import PileControl, axial, held
+
+RELEASED = 1e-9
+"""Tolerance of the steps that release the out-of-balance force of a hand-over, if not smaller."""
 
 
 def roller_supports(mesh: FEMesh) -> np.ndarray:
@@ -233,8 +238,11 @@ class ServiceProblem:
         """
         gravity = self.gravity(state)
         external = gravity - (1.0 - share) * (gravity - self.internal_force(state))
+        exact = replace(self.numerics, tolerance=min(self.numerics.tolerance, RELEASED))
+        model = self.model._replace(numerics=exact)
+        still = np.zeros_like(self.mesh.nodes)
         try:
-            step = self.solve(state, held(self.dim), external_force=external)
+            step = LoadStep(model, state, held(self.dim), still, external).solve(None)
         except StepNotConvergedError as error:
             raise EquilibrationError(
                 f"releasing {share:.0%} of the out-of-balance force failed: {error};"

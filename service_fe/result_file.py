@@ -25,7 +25,7 @@ from service_fe.results import (
 )
 
 FORMAT = "screwpile-service-result"
-VERSION = 4
+VERSION = 5
 
 RECORDS = {"mesh": FEMesh, "integration": FEIntegrationPoints, "interface": FEInterfacePoints}
 """Groups of the file that all programmes share."""

@@ -57,6 +57,10 @@ class Curve(NamedTuple):
     ]
     cuts: Annotated[np.ndarray, _per_step("", "times the step was halved", "int64")]
     settled: Annotated[np.ndarray, _per_step("", "damped parts of a settled step", "int64")]
+    viscous_share: Annotated[
+        np.ndarray,
+        _per_step("", "forces of the viscous stress over external force plus reactions"),
+    ]
     factorisations: Annotated[
         np.ndarray, _per_step("", "factorisations of the stiffness in the step", "int64")
     ]

@@ -29,7 +29,6 @@ from service_fe.newton import StepNotConvergedError
 from service_fe.options import Programme
 from service_fe.problem import ServiceProblem
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
-from service_fe.rigid_pile import PileControl
 from service_fe.settling import Settled, settle
 
 
@@ -199,7 +198,7 @@ def advance(
     part = None
     while done < 1.0:
         try:
-            part = _part(problem, state, imposed.control(done, done + share), guess)
+            part = _part(problem, state, imposed, (done, done + share), guess)
         except StepNotConvergedError:
             guess = None
             cuts += 1
@@ -217,18 +216,24 @@ def advance(
 
 
 def _part(
-    problem: ServiceProblem, state: FEState, control: PileControl, guess: Unknowns | None
+    problem: ServiceProblem,
+    state: FEState,
+    imposed: ImposedStep,
+    shares: tuple[float, float],
+    guess: Unknowns | None,
 ) -> Settled:
-    """Return a part of a step, solved from ``guess``, from rest, or settled."""
+    """Return a step between two shares of it, solved from ``guess``, from rest, or settled."""
+    numerics, control = problem.numerics, imposed.control(*shares)
+    viscous = numerics.viscosity / (imposed.duration * (shares[1] - shares[0]))
     for first in (guess, None) if guess is not None else (None,):
         try:
-            step = problem.solve(state, control, guess=first)
+            step = problem.solve(state, control, guess=first, damping=viscous)
         except StepNotConvergedError:
-            if first is None and problem.numerics.damping == 0.0:
+            if first is None and numerics.damping == 0.0:
                 raise
         else:
             return Settled(step, step.increment, step.iterations, 0)
-    return settle(problem, state, control, problem.numerics.damping)
+    return settle(problem, state, control, numerics.damping)
 
 
 class _Row(NamedTuple):
@@ -237,6 +242,7 @@ class _Row(NamedTuple):
     iterations: int
     cuts: int
     settled: int
+    viscous_share: float
     work: Work
     residuals: tuple[float, ...]
     motion: np.ndarray
@@ -246,7 +252,7 @@ class _Row(NamedTuple):
 def _first_row(problem: ServiceProblem, mode: Mode, load: np.ndarray) -> _Row:
     whole = problem.whole_body * load
     head_load = float(mode.measure @ (whole @ mode.frame))
-    return _Row(0.0, head_load, 0, 0, 0, Work(), (), np.zeros(len(load)), whole)
+    return _Row(0.0, head_load, 0, 0, 0, 0.0, Work(), (), np.zeros(len(load)), whole)
 
 
 def _row(problem: ServiceProblem, before: _Row, mode: Mode, taken: Advance, work: Work) -> _Row:
@@ -258,6 +264,7 @@ def _row(problem: ServiceProblem, before: _Row, mode: Mode, taken: Advance, work
         taken.iterations,
         taken.cuts,
         taken.settled,
+        taken.last.viscous_share,
         work,
         taken.last.residuals,
         before.motion + moved,
@@ -278,6 +285,7 @@ def _curve(rows: Sequence[_Row]) -> Curve:
         convergence_order=np.array([convergence_order(np.array(row.residuals)) for row in rows]),
         cuts=np.array([row.cuts for row in rows], dtype=np.int64),
         settled=np.array([row.settled for row in rows], dtype=np.int64),
+        viscous_share=np.array([row.viscous_share for row in rows]),
         **_work_of([row.work for row in rows]),
         residual_history=history,
         motion=np.array([row.motion for row in rows]),

@@ -173,6 +173,7 @@ def convergence(installed: InstalledState, results: list[ServiceResult]) -> dict
                 entry.programme.name: {
                     **convergence_figures(entry.curve),
                     "settled_steps": int(np.count_nonzero(entry.curve.settled)),
+                    "largest_viscous_share": float(entry.curve.viscous_share.max()),
                     **{name: int(getattr(entry.curve, name).sum()) for name in LINEAR_WORK},
                 }
                 for entry in result.programmes

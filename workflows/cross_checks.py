@@ -196,6 +196,11 @@ def check_programmes(service: ServiceOptions, kinematics: Kinematics) -> None:
     wrong = contradiction(service.programmes)
     if wrong is not None:
         raise CaseError(f"service.programmes: {wrong}")
+    if service.numerics.damping and service.numerics.viscosity:
+        raise CaseError(
+            "service.numerics gives both damping and viscosity; viscosity is there in every step, "
+            "and damping in none that is accepted: set one of them to 0"
+        )
     for programme in service.programmes:
         if kinematics != Kinematics.THREE_D and not isinstance(programme, IN_THE_PLANE):
             raise CaseError(

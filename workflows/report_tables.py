@@ -169,8 +169,8 @@ def certificate_table(
 def convergence_table(convergence: dict[str, Any]) -> str:
     """Return the statistics of Newton's method in the installation and in every programme."""
     head: Row = ["", *map(number, ("steps", "iterations, mean", "halvings", "largest residual",
-                                   "order, median", "order ≥ 1.8", "factorisations", "GMRES",
-                                   "fallbacks to MUMPS"))]  # fmt: skip
+                                   "order, median", "order ≥ 1.8", "viscous", "factorisations",
+                                   "GMRES", "fallbacks to MUMPS"))]  # fmt: skip
     rows = [_convergence_row("installation", convergence["installation"])]
     for model in MODELS:
         for name, figures in convergence.get(model, {}).items():
@@ -188,6 +188,8 @@ def _convergence_row(name: str, figures: dict[str, Any]) -> Row:
         "–" if order is None else significant(order, 3),
         "–" if share is None
         else f"{100.0 * share:.0f} % of {figures['steps_with_known_order']}",
+        "–" if not figures.get("largest_viscous_share")
+        else f"{100.0 * figures['largest_viscous_share']:.2f} %",
         *(str(figures.get(name, "–")) for name in LINEAR_WORK),
     )  # fmt: skip
     return [name, *map(number, texts)]

@@ -106,6 +106,15 @@ def test_tangent_of_the_complete_model_against_finite_differences(pile_problem, 
     assert error < 1e-6
 
 
+def test_equilibration_is_exact_whatever_the_tolerance_of_the_programmes(
+    make_pile_problem, undisturbed
+):
+    coarse = make_pile_problem(ServiceNumerics(tolerance=1e-4))
+    disturbed = undisturbed._replace(cauchy_stress=0.95 * undisturbed.cauchy_stress)
+    assert coarse.out_of_balance(disturbed) > 1e-4
+    assert coarse.out_of_balance(coarse.release(disturbed, 1.0).state) < 1e-8
+
+
 def test_load_of_a_prescribed_motion_gives_the_motion_back(make_pile_problem, undisturbed):
     tight = make_pile_problem(ServiceNumerics(tolerance=1e-12))
     prescribed = tight.solve(undisturbed, moved(0.004))

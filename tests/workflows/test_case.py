@@ -164,6 +164,7 @@ def test_another_soil_is_chosen_by_its_tag():
         ("numerics.tolerance=1e-3", "numerics.tolerance", "<= 1e-06"),
         ("interface.tensile_strength=0 kPa", "interface.tensile_strength", "set it, e.g."),
         ("service.programmes=[]", "service.programmes", "add at least one"),
+        ("service.numerics={damping=0.1, viscosity=0.01}", "damping and viscosity", "set one"),
         ("service.programmes.uplift.name=push_on", "service.programmes", "are named 'push_on'"),
         ("service.programmes.uplift.start=later", "start", "which is not before it; use one of"),
         ("service.programmes.nobody.start=later", "--set", "use one of release, compression"),

@@ -54,7 +54,7 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     )
     if is_first():
         write_service_result(directory / SERVICE, result, created_by())
-    return settled_notes(result) + fallback_notes(result)
+    return settled_notes(result) + viscous_notes(result) + fallback_notes(result)
 
 
 def rebound_motion(pile: HandedOffPile, dim: int) -> np.ndarray:
@@ -74,6 +74,18 @@ def settled_notes(result: ServiceResult) -> list[str]:
         f"{name}: {count} steps were settled with damping"
         for name, count in settled.items()
         if count
+    ]
+
+
+def viscous_notes(result: ServiceResult) -> list[str]:
+    """Return a line for each programme in which viscosity carried something."""
+    largest = {
+        entry.programme.name: float(entry.curve.viscous_share.max()) for entry in result.programmes
+    }
+    return [
+        f"{name}: viscosity of the soil carried at most {share:.2%} of the loads"
+        for name, share in largest.items()
+        if share
     ]
 
 

@@ -29,7 +29,7 @@ from workflows.placed import (
 from workflows.progress import Advance, no_progress, service_observer
 from workflows.ranks import is_first, on_first
 from workflows.screw_case import ScrewCase
-from workflows.stages.serve import fallback_notes, settled_notes
+from workflows.stages.serve import fallback_notes, settled_notes, viscous_notes
 from workflows.state_files import read_checked
 
 
@@ -64,7 +64,7 @@ def run(case: AnyCase, directory: Path, advance: Advance = no_progress) -> list[
     if is_first():
         (directory / WISHED).mkdir(exist_ok=True)
         write_service_result(directory / WISHED_SERVICE, result, created_by())
-    return settled_notes(result) + fallback_notes(result)
+    return settled_notes(result) + viscous_notes(result) + fallback_notes(result)
 
 
 def _placed(case: AnyCase, directory: Path) -> PlacedPile:
