@@ -42,6 +42,8 @@ USUAL_REUSE = 40
 """Most iterations of GMRES with old factors on large meshes."""
 MANY_UNKNOWNS = 20_000
 """Unknowns in space from which factors are used again by default."""
+USUALLY_DROPPED = 1e-3
+"""Of factors that are used again on such meshes: they precondition, and need not be exact."""
 MAX_MULTIGRID = 150
 """Iterations of GMRES with multigrid after which it has failed."""
 
@@ -73,7 +75,7 @@ class Work(NamedTuple):
     factorisations: int = 0
     krylov_iterations: int = 0
     fallbacks: int = 0
-    """Times multigrid failed and MUMPS took over."""
+    """Times multigrid failed and factors took over, or those of low rank and others did."""
 
     def since(self, before: Work) -> Work:
         """Return the work done after ``before``."""
@@ -104,6 +106,8 @@ class CoupledSolver:
         again.
     partition
         The ranks of MPI that solve the system together.
+    dropped
+        Share of the factors that is dropped, see ``LUFactors``.
     """
 
     def __init__(
@@ -112,9 +116,10 @@ class CoupledSolver:
         multigrid: ApproximateInverse | None,
         max_reuse: int,
         partition: Partition = ALONE,
+        dropped: float = 0.0,
     ) -> None:
         self.matrix, self.work, self._partition = matrix, Work(), partition
-        self._multigrid, self._factors = multigrid, LUFactors(matrix)
+        self._multigrid, self._factors = multigrid, LUFactors(matrix, dropped)
         self._max_reuse = max_reuse
         growth = np.sqrt(len(matrix.row_of_dof) / COST_UNKNOWNS)
         self._factorisation_cost = FACTORISATION_COST * max(1.0, growth)
@@ -138,6 +143,11 @@ class CoupledSolver:
             found = self._with_multigrid(self._multigrid, system, tolerance)
         if found is None:
             found = self._with_new_factors(system, tolerance)
+        if found is None:
+            self._count(fallbacks=1)
+            self._factors.keep_full_rank()
+            found = self._with_new_factors(system, tolerance)
+        assert found is not None
         found = self._partition.agreed(found)
         return found[: len(system.soil_force)], found[len(system.soil_force) :]
 
@@ -169,17 +179,28 @@ class CoupledSolver:
         found = self._iterated(multigrid, border, system, tolerance, MAX_MULTIGRID)
         if found.is_reached:
             return found.solution
-        self.work = self.work._replace(fallbacks=self.work.fallbacks + 1)
+        self._count(fallbacks=1)
         return None
 
-    def _with_new_factors(self, system: CoupledSystem, tolerance: float) -> np.ndarray:
+    def _with_new_factors(self, system: CoupledSystem, tolerance: float) -> np.ndarray | None:
+        """Return the solution, or None if factors of low rank are not good enough for it."""
         self.forget()
-        self.work = self.work._replace(factorisations=self.work.factorisations + 1)
+        self._count(factorisations=1)
         self._factors.update()
         self._border = _border_of(system, self._factors)
-        right = np.concatenate([system.soil_force, system.pile_force])
-        self._iterations_since = [1]
-        return _preconditioned(self._factors, self._border, right)
+        if self._factors.are_exact:
+            right = np.concatenate([system.soil_force, system.pile_force])
+            self._iterations_since = [1]
+            return _preconditioned(self._factors, self._border, right)
+        found = self._iterated(self._factors, self._border, system, tolerance, self._max_reuse)
+        self._iterations_since = [found.iterations]
+        return found.solution if found.is_reached else None
+
+    def _count(self, **more: int) -> None:
+        """Add to the work that has been done."""
+        self.work = self.work._replace(
+            **{name: getattr(self.work, name) + number for name, number in more.items()}
+        )
 
     def _iterated(
         self,
@@ -208,8 +229,7 @@ class CoupledSolver:
             max_iterations,
             self._partition.agreed,
         )
-        total = self.work.krylov_iterations + found.iterations
-        self.work = self.work._replace(krylov_iterations=total)
+        self._count(krylov_iterations=found.iterations)
         return found
 
 
@@ -218,15 +238,20 @@ def make_solver(soil: Forms, numerics: ServiceNumerics) -> CoupledSolver:
     matrix = TangentMatrix(soil.matrix, soil.row_of_dof)
     is_iterative = numerics.solver == "iterative"
     multigrid = Multigrid(matrix, soil.rigid_modes()) if is_iterative else None
-    return CoupledSolver(matrix, multigrid, max_reuse(soil, numerics), soil.partition)
+    reuse = max_reuse(soil, numerics)
+    dropped = USUALLY_DROPPED if reuse and _is_large(soil) else 0.0
+    return CoupledSolver(matrix, multigrid, reuse, soil.partition, dropped)
 
 
 def max_reuse(soil: Forms, numerics: ServiceNumerics) -> int:
     """Return the most iterations of GMRES with old factors: as given, or what pays on the mesh."""
     if numerics.max_factor_reuse is not None:
         return numerics.max_factor_reuse
-    is_large = soil.mesh.nodes.shape[1] == 3 and soil.n_dofs >= MANY_UNKNOWNS
-    return USUAL_REUSE if is_large else 0
+    return USUAL_REUSE if _is_large(soil) else 0
+
+
+def _is_large(soil: Forms) -> bool:
+    return soil.mesh.nodes.shape[1] == 3 and soil.n_dofs >= MANY_UNKNOWNS
 
 
 def _border_of(system: CoupledSystem, inverse: ApproximateInverse) -> _Border:

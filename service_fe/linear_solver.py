@@ -15,6 +15,10 @@ from service_fe.partition import gathered
 
 MAX_TRANSVERSAL = 6
 """MUMPS ICNTL(6): 0 leaves out the permutation that depends on values and outdates the analysis."""
+LOW_RANK, DROPPED = 35, 7
+"""MUMPS ICNTL(35), 2: blocks far from the diagonal of a front are kept as products of low rank.
+What CNTL(7) of their size is dropped.
+"""
 
 
 class FactorisationError(RuntimeError):
@@ -77,11 +81,12 @@ class ApproximateInverse(Protocol):
 class LUFactors:
     """MUMPS; the analysis of the pattern is made once.
 
-    The tangent is unsymmetric for a non-associated law, hence LU for all.
+    The tangent is unsymmetric for a non-associated law, hence LU for all.  With ``dropped`` the
+    factors are of low rank (Amestoy et al. 2015): cheaper, and exact only to about that share.
     """
 
-    def __init__(self, matrix: TangentMatrix) -> None:
-        self._matrix = matrix
+    def __init__(self, matrix: TangentMatrix, dropped: float = 0.0) -> None:
+        self._matrix, self._dropped = matrix, dropped
         self._solution = matrix.matrix.createVecRight()
         self._factors = PETSc.PC().create(matrix.matrix.getComm())
         self._factors.setOperators(matrix.matrix)
@@ -92,7 +97,11 @@ class LUFactors:
     def _prepare(self) -> None:
         """Make the analysis independent of values; needed again after a reset."""
         self._factors.setFactorSetUpSolverType()
-        self._factors.getFactorMatrix().setMumpsIcntl(MAX_TRANSVERSAL, 0)
+        mumps = self._factors.getFactorMatrix()
+        mumps.setMumpsIcntl(MAX_TRANSVERSAL, 0)
+        if self._dropped:
+            mumps.setMumpsIcntl(LOW_RANK, 2)
+            mumps.setMumpsCntl(DROPPED, self._dropped)
 
     def update(self) -> None:
         """Factorise.
@@ -106,10 +115,23 @@ class LUFactors:
         self._factors.setUp()
         self._factors.setReusePreconditioner(True)
         if self._factors.getFactorMatrix().getMumpsInfog(1) < 0:
-            self._factors.reset()  # PETSc would leave out the factorisation after a failed one
-            self._factors.setOperators(self._matrix.matrix)
-            self._prepare()
+            self._begin_again()  # PETSc would leave out the factorisation after a failed one
             raise FactorisationError("the tangent stiffness is singular")
+
+    @property
+    def are_exact(self) -> bool:
+        """Whether the next factors will have full rank."""
+        return self._dropped == 0.0
+
+    def keep_full_rank(self) -> None:
+        """Drop nothing from now on."""
+        self._dropped = 0.0
+        self._begin_again()
+
+    def _begin_again(self) -> None:
+        self._factors.reset()
+        self._factors.setOperators(self._matrix.matrix)
+        self._prepare()
 
     def solve(self, right_hand_side: np.ndarray) -> np.ndarray:
         """Return the solution (n_dofs,) with the last factors."""

@@ -171,3 +171,18 @@ def test_programmes_do_not_depend_on_the_solver(make_pile_problem, undisturbed, 
         for result in (plain, other)
     )
     assert after < 0.5 * before
+
+
+def test_factors_of_low_rank_are_iterated_and_give_way_to_full_ones(soil, fixed):
+    matrix = TangentMatrix(soil.matrix, soil.row_of_dof)
+    solver = CoupledSolver(matrix, None, 30, dropped=1e-3)
+    fill(soil, matrix, fixed, 1)
+    system = system_of(soil, fixed, 1)
+    assert error(matrix, system, solver.solve(system, 1e-9)) < 1.001e-9
+    assert solver.work.krylov_iterations >= 1  # never taken for exact
+    assert (solver.work.factorisations, solver.work.fallbacks) == (1, 0)
+
+    impatient = CoupledSolver(matrix, None, 1, dropped=1e-3)
+    found = impatient.solve(system, 0.0)  # no iteration reaches that
+    assert error(matrix, system, found) < 1e-9 * np.linalg.norm(system.soil_force)
+    assert (impatient.work.factorisations, impatient.work.fallbacks) == (2, 1)
