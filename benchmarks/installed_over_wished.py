@@ -1,8 +1,9 @@
 """Installed over wished in place: stiffness and capacity of a screw pile at two advances.
 
-    python benchmarks/installed_over_wished.py -o DIR [--turns 0.25] [--page FILE.md]
+    python benchmarks/installed_over_wished.py -o DIR [--soils clay sand] [--ratios 1 0.5]
+        [--turns 0.25] [--page FILE.md]
 
-The pile of the quick case in clay is screwed in at the advance of its pitch and at half of it,
+The pile of each quick case, in clay and in sand, is screwed in at the advance of its pitch and at half of it,
 handed over, and loaded in compression, uplift and sideways, beside the same pile wished in place.
 Each run makes a repeat with smaller finite elements and one with another transfer of the state: the
 range of a ratio is the larger of what they differ by. One run after the other, each in a folder of
@@ -20,8 +21,6 @@ from workflows.case import read_case
 from workflows.directory import SUMMARY
 from workflows.runner import run_case
 
-IN_SERVICE = ("clay",)
-"""Soils of the quick cases; sand in space does not converge in service yet (docs/service.md)."""
 RATIOS = (1.0, 0.5)
 PROGRAMMES = ("release", "compression", "uplift", "lateral")
 FIGURES = {"initial_stiffness": "initial stiffness", "capacity": "capacity at 0.1 D"}
@@ -63,6 +62,8 @@ def main():
     """Run what is missing and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR")
+    parser.add_argument("--soils", nargs="+", choices=SOILS, default=list(SOILS))
+    parser.add_argument("--ratios", nargs="+", type=float, default=RATIOS)
     parser.add_argument("--turns", type=float, default=0.25)
     parser.add_argument("--page", type=Path, metavar="FILE.md")
     options = parser.parse_args()
@@ -71,8 +72,8 @@ def main():
         + " | ".join(FIGURES.values()) + " |",
         "|---|--:|--:|--:|---|--:|--:|",
     ]  # fmt: skip
-    for soil in IN_SERVICE:
-        for ratio in RATIOS:
+    for soil in options.soils:
+        for ratio in options.ratios:
             folder = options.output / f"{soil}, advancement ratio {ratio:g}"
             lines += rows_of(soil, ratio, summary_of(case_of(soil, ratio, options.turns), folder))
             print("\n".join(lines), flush=True)

@@ -34,12 +34,18 @@ class FootingCurve:
 
 
 def curve_on_finest_mesh(
-    title: str, fine: FootingCurve, exact: float, *, width: str, factor: str
+    title: str,
+    fine: FootingCurve,
+    exact: float,
+    *,
+    width: str,
+    factor: str,
+    way: str = "settlement",
 ) -> Series:
     """Return the curve of the finest mesh; ``width`` and ``factor`` are symbols of the axes."""
     return Series(
         title,
-        f"settlement / {width}",
+        f"{way} / {width}",
         factor,
         tuple(fine.settlement),
         tuple(fine.bearing_factor),
@@ -48,12 +54,18 @@ def curve_on_finest_mesh(
 
 
 def error_over_size(
-    title: str, results: Sequence[FootingCurve], exact: float, sizes: Sequence[float], *, width: str
+    title: str,
+    results: Sequence[FootingCurve],
+    exact: float,
+    sizes: Sequence[float],
+    *,
+    width: str,
+    place: str = "edge of the footing",
 ) -> Series:
-    """Return the error of the plateau over the ``sizes`` of the elements at the edge."""
+    """Return the error of the plateau over the ``sizes`` of the elements at the ``place``."""
     return Series(
         title,
-        f"size at the edge of the footing / {width}",
+        f"size at the {place} / {width}",
         "relative error",
         tuple(sizes),
         tuple(abs(result.plateau / exact - 1.0) for result in results),

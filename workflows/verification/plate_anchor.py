@@ -145,9 +145,16 @@ def pc7(
     )
     series = (
         curve_on_finest_mesh(
-            "plate, finest mesh", fine, bound, width="D", factor="mean pressure / (gamma H)"
+            "plate, finest mesh",
+            fine,
+            bound,
+            width="D",
+            factor="mean pressure / (gamma H)",
+            way="uplift",
         ),
-        error_over_size("plate, load above the bound", curves, bound, SIZES, width="D"),
+        error_over_size(
+            "plate, load above the bound", curves, bound, SIZES, width="D", place="cone"
+        ),
     )
     histories = tuple(history for curve in curves for history in curve.residuals)
     return Outcome(checks, series, residual_histories=histories)
