@@ -3,11 +3,11 @@
     python benchmarks/installed_over_wished.py -o DIR [--soils clay sand] [--ratios 1 0.5]
         [--turns 0.25] [--page FILE.md]
 
-The pile of each quick case, in clay and in sand, is screwed in at the advance of its pitch and at half of it,
-handed over, and loaded in compression, uplift and sideways, beside the same pile wished in place.
-Each run makes a repeat with smaller finite elements and one with another transfer of the state: the
-range of a ratio is the larger of what they differ by. One run after the other, each in a folder of
-its own in DIR; stages that are there are not repeated.
+The pile of each quick case, in clay and in sand, is screwed in at the advance of its pitch and at
+half of it, handed over, and loaded in compression, uplift and sideways, beside the same pile wished
+in place. Each run makes a repeat with smaller finite elements and one with another transfer of the
+state: the range of a ratio is the larger of what they differ by. One run after the other, each in a
+folder of its own in DIR; stages that are there are not repeated.
 """
 
 import argparse

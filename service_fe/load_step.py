@@ -71,7 +71,7 @@ class Step(NamedTuple):
     residuals: tuple[float, ...]
     """Relative out-of-balance force before each iteration and at the end."""
     viscous_share: float
-    """Nodal forces of the viscous stress over the same reference; zero without damping."""
+    """Work of the viscous stress over that of the load on the pile; zero without damping."""
 
     @property
     def head_load(self) -> float:
@@ -128,6 +128,7 @@ class LoadStep:
         self._start_reference = 0.0
         unmoved = self.evaluate(self._first_unknowns(None))
         self._start_reference = self._reference(unmoved.soil_residual, unmoved.pile_force)
+        self._start_load = unmoved.pile_force
 
     def solve(self, guess: Unknowns | None) -> Step:
         """Return the accepted step; see ``ServiceProblem.solve`` for guess and errors."""
@@ -204,13 +205,19 @@ class LoadStep:
         return np.einsum("qij,qj->qi", self._viscosity, strain)
 
     def _viscous_share(self, trial: Trial) -> float:
-        """Return what the viscous stress carries at the free nodes over the reference."""
+        """Return the work of the viscous stress over that of the larger of the pile's two loads.
+
+        By virtual work it is the share of the load that viscosity takes.
+        """
         if self._viscosity is None:
             return 0.0
-        soil = self.model.soil
-        force = soil.internal_force(self._viscous_stress(soil.strain(trial.unknowns.displacement)))
-        carried = float(np.linalg.norm(force[~self.model.is_fixed]))
-        return carried / self._reference(trial.soil_residual, trial.pile_force)
+        soil, (displacement, motion) = self.model.soil, trial.unknowns
+        strain = soil.strain(displacement)
+        power = np.einsum("qi,qi->q", self._viscous_stress(strain), strain)
+        own = soil.integration_volumes[soil.partition.own_points] @ power
+        viscous = float(soil.partition.sum_of(np.array(own)))
+        of_pile = max(abs(load @ motion) for load in (self._start_load, trial.pile_force))
+        return viscous / of_pile if of_pile else 0.0
 
     def _reference(self, soil_residual: np.ndarray, pile_force: np.ndarray) -> float:
         """Return external force plus support reaction plus load or reaction of the pile, in N.

@@ -104,8 +104,6 @@ class ImposedStep:
     load_start: np.ndarray
     """Loads (n_motions,) on the modelled part at the start of the step, in N and N m."""
     load_end: np.ndarray
-    duration: float = 1.0
-    """Of the step over that of a whole one of its programme; only viscosity knows of time."""
 
     @property
     def size(self) -> float:
@@ -237,6 +235,5 @@ def _motion_steps(
     first = [*parts[:1], *parts] if len(parts) else [1.0]
     step = motion / n_steps
     return [
-        ImposedStep(mode, share * step, load, load, duration=share)
-        for share in [*first, *[1.0] * (n_steps - 1)]
+        ImposedStep(mode, share * step, load, load) for share in [*first, *[1.0] * (n_steps - 1)]
     ]

@@ -169,9 +169,9 @@ class ServiceNumerics:
     damping: Annotated[float, Ge(0), Le(10)] = 0.0
     """Viscous over elastic stress with which a step that does not converge is settled; 0: never."""
     viscosity: Annotated[float, Ge(0), Le(1)] = 0.0
-    """Viscous over elastic stress of soil that strains as fast as in a whole step of a programme.
+    """Viscous over elastic stress of the strain in a whole step of a programme.
 
-    Sand in space needs some; ``viscous_share`` of the results tells what it carries.
+    Sand in space needs some; ``viscous_share`` of the results tells how much of the load it takes.
     """
     solver: Literal["mumps", "iterative"] = "mumps"
     """Of the linear systems: LU factors, or multigrid with MUMPS where that fails."""

@@ -59,7 +59,7 @@ class Curve(NamedTuple):
     settled: Annotated[np.ndarray, _per_step("", "damped parts of a settled step", "int64")]
     viscous_share: Annotated[
         np.ndarray,
-        _per_step("", "forces of the viscous stress over external force plus reactions"),
+        _per_step("", "work of the viscous stress of the soil over that of the load on the pile"),
     ]
     factorisations: Annotated[
         np.ndarray, _per_step("", "factorisations of the stiffness in the step", "int64")

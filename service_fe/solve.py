@@ -224,7 +224,7 @@ def _part(
 ) -> Settled:
     """Return a step between two shares of it, solved from ``guess``, from rest, or settled."""
     numerics, control = problem.numerics, imposed.control(*shares)
-    viscous = numerics.viscosity / (imposed.duration * (shares[1] - shares[0]))
+    viscous = numerics.viscosity / (shares[1] - shares[0])
     for first in (guess, None) if guess is not None else (None,):
         try:
             step = problem.solve(state, control, guess=first, damping=viscous)

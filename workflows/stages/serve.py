@@ -78,12 +78,12 @@ def settled_notes(result: ServiceResult) -> list[str]:
 
 
 def viscous_notes(result: ServiceResult) -> list[str]:
-    """Return a line for each programme in which viscosity carried something."""
+    """Return a line for each programme in which viscosity took a part of the load."""
     largest = {
         entry.programme.name: float(entry.curve.viscous_share.max()) for entry in result.programmes
     }
     return [
-        f"{name}: viscosity of the soil carried at most {share:.2%} of the loads"
+        f"{name}: viscosity of the soil took at most {share:.2%} of the load"
         for name, share in largest.items()
         if share
     ]
