@@ -19,11 +19,12 @@ from service_fe.axisymmetric_forms import AxisymmetricForms
 from service_fe.coupled_solver import CoupledSolver, CoupledSystem
 from service_fe.interface_forms import InterfaceForms, InterfaceResponse
 from service_fe.linear_solver import FactorisationError
-from service_fe.material_map import SoilResponse, soil_response, viscous_tangent
+from service_fe.material_map import SoilResponse, soil_response
 from service_fe.newton import StepNotConvergedError, linear_tolerance, solve_newton
 from service_fe.options import ServiceNumerics
 from service_fe.rigid_pile import PileControl, frame_of
 from service_fe.soil_forms import SoilForms
+from service_fe.viscosity import viscous_stress, viscous_tangent, viscous_work
 
 
 class Model(NamedTuple):
@@ -175,7 +176,7 @@ class LoadStep:
         soil = soil_response(model.materials, self._own_state, strain)
         stress = soil.stress
         if self._viscosity is not None:
-            stress = stress + self._viscous_stress(strain)
+            stress = stress + viscous_stress(self._viscosity, strain)
             soil = soil._replace(tangent=soil.tangent + self._viscosity)
         interface = model.interface.response(
             model.interface_parameters,
@@ -201,9 +202,6 @@ class LoadStep:
             model.soil.partition.agreed(relative),
         )
 
-    def _viscous_stress(self, strain: np.ndarray) -> np.ndarray:
-        return np.einsum("qij,qj->qi", self._viscosity, strain)
-
     def _viscous_share(self, trial: Trial) -> float:
         """Return the work of the viscous stress over that of the larger of the pile's two loads.
 
@@ -211,12 +209,9 @@ class LoadStep:
         """
         if self._viscosity is None:
             return 0.0
-        soil, (displacement, motion) = self.model.soil, trial.unknowns
-        strain = soil.strain(displacement)
-        power = np.einsum("qi,qi->q", self._viscous_stress(strain), strain)
-        own = soil.integration_volumes[soil.partition.own_points] @ power
-        viscous = float(soil.partition.sum_of(np.array(own)))
+        displacement, motion = trial.unknowns
         of_pile = max(abs(load @ motion) for load in (self._start_load, trial.pile_force))
+        viscous = viscous_work(self.model.soil, self._viscosity, displacement)
         return viscous / of_pile if of_pile else 0.0
 
     def _reference(self, soil_residual: np.ndarray, pile_force: np.ndarray) -> float:

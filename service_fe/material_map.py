@@ -14,7 +14,6 @@ from handoff.fe_state_file import FEState
 from handoff.tensor_arrays import six_vectors
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.dispatch import Materials
-from install_mpm.constitutive.models import Model
 
 
 class SoilResponse(NamedTuple):
@@ -52,20 +51,3 @@ def soil_response(
     return SoilResponse(
         stress, elastic_strain, state_variables, tangent, int(np.count_nonzero(status))
     )
-
-
-def viscous_tangent(materials: Materials, state: FEState) -> np.ndarray:
-    """Return the elastic tangent (n_q, 6, 6) in Pa of soil that can fail: its viscosity's measure.
-
-    It is that of half the elastic strain of ``state``, well inside the yield surface.  Openings
-    count as closed: soil that has opened has no stiffness of its own, and needs viscosity most.
-    A purely elastic material, such as a pile's, has none.
-    """
-    variables = state.state_variables.copy()
-    columns = dispatch.state_columns(materials, "opening")[state.material]
-    opens = np.flatnonzero(columns >= 0)
-    variables[opens, columns[opens]] = 0.0
-    half = state._replace(elastic_strain=0.5 * state.elastic_strain, state_variables=variables)
-    tangent = soil_response(materials, half, np.zeros((len(state.material), 6))).tangent
-    tangent[materials.model[state.material] == Model.HENCKY_ELASTIC] = 0.0
-    return tangent

@@ -88,7 +88,7 @@ def test_torque_and_force_of_two_soils_are_tabled_and_drawn(tmp_path):
     assert (tmp_path / "ratios.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("soil", beside.IN_SERVICE)
+@pytest.mark.parametrize("soil", beside.SOILS)
 def test_a_pile_beside_the_wished_one_is_released_and_loaded(soil):
     case = beside.case_of(soil, 0.5, 0.25)
     assert case.installation.release
