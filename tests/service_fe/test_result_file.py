@@ -57,7 +57,7 @@ def test_what_a_pile_feels_along_its_axis_comes_back(tmp_path, result):
 def test_file_carries_format_and_case(path):
     with h5py.File(path) as file:
         assert file.attrs["format"] == "screwpile-service-result"
-        assert file.attrs["version"] == 4
+        assert file.attrs["version"] == 5
         assert file.attrs["case_sha256"] == case_hash(CASE_TEXT)
         assert file["programmes/001/curve/head_load"].attrs["unit"] == "N or N m"
 

@@ -13,7 +13,7 @@ def curve_of(displacement, head_load):
     zero, count = np.zeros(n), np.zeros(n, dtype=np.int64)
     return Curve(
         np.asarray(displacement), np.asarray(head_load), count, zero, zero, count, count,
-        count, count, count, zero[:, None], zero[:, None], zero[:, None],
+        zero, count, count, count, zero[:, None], zero[:, None], zero[:, None],
     )  # fmt: skip
 
 

@@ -83,7 +83,7 @@ def viscous_notes(result: ServiceResult) -> list[str]:
         entry.programme.name: float(entry.curve.viscous_share.max()) for entry in result.programmes
     }
     return [
-        f"{name}: viscosity of the soil took at most {share:.2%} of the load"
+        f"{name}: viscosity of the soil took at most {share:.2%} of the work of the load"
         for name, share in largest.items()
         if share
     ]
