@@ -47,6 +47,11 @@ class TangentMatrix:
             self.matrix.setValues(rows, rows, block, addv=PETSc.InsertMode.ADD_VALUES)
         self.matrix.assemble()
 
+    def mean_diagonal(self) -> float:
+        """Return the mean of the diagonal, a neutral size for rows that are taken out."""
+        diagonal = self.matrix.getDiagonal()
+        return float(diagonal.sum() / diagonal.getSize())
+
     def fix(self, fixed_dofs: np.ndarray, diagonal: float) -> None:
         """Make rows and columns of ``fixed_dofs`` zero but for ``diagonal``."""
         own = fixed_dofs[self._is_own[fixed_dofs]]

@@ -24,6 +24,7 @@ from service_fe.newton import StepNotConvergedError, linear_tolerance, solve_new
 from service_fe.options import ServiceNumerics
 from service_fe.rigid_pile import PileControl, frame_of
 from service_fe.soil_forms import SoilForms
+from service_fe.step import Step, Unknowns
 from service_fe.viscosity import viscous_stress, viscous_tangent, viscous_work
 
 
@@ -41,49 +42,6 @@ class Model(NamedTuple):
     pile_weight: np.ndarray
     """Weight (n_motions,) of the modelled part of the pile, in N and N m."""
     numerics: ServiceNumerics
-
-
-class Unknowns(NamedTuple):
-    """Increments since the accepted state."""
-
-    displacement: np.ndarray
-    """Soil (node, dim) in m."""
-    motion: np.ndarray
-    """Pile (n_motions,) in m and rad."""
-
-    def scaled(self, factor: float) -> Unknowns:
-        """Return ``factor`` times these increments."""
-        return Unknowns(factor * self.displacement, factor * self.motion)
-
-    def plus(self, other: Unknowns) -> Unknowns:
-        """Return the sum of two increments."""
-        return Unknowns(self.displacement + other.displacement, self.motion + other.motion)
-
-
-class Step(NamedTuple):
-    """An accepted load step."""
-
-    state: FEState
-    increment: Unknowns
-    pile_load: np.ndarray
-    """Load (n_motions,) in N and N m on the modelled part of the pile at the end, less weight."""
-    support_reaction: np.ndarray
-    """Forces (node, dim) in N of the supports on the soil; zero at free nodes."""
-    residuals: tuple[float, ...]
-    """Relative out-of-balance force before each iteration and at the end."""
-    viscous_share: float
-    """Work of the viscous stress over that of the load on the pile; zero without damping."""
-
-    @property
-    def head_load(self) -> float:
-        """Downward load in N on the head of the modelled part."""
-        vertical = self.increment.displacement.shape[1] - 1
-        return float(-self.pile_load[vertical]) + 0.0  # no negative zero
-
-    @property
-    def iterations(self) -> int:
-        """Newton iterations."""
-        return len(self.residuals) - 1
 
 
 class Trial(NamedTuple):
@@ -263,7 +221,7 @@ class LoadStep:
     def _system(self, trial: Trial, soil_jump: np.ndarray, pile_jump: np.ndarray) -> CoupledSystem:
         """Return the linear system of an iteration, with K_ss left in the solver's matrix."""
         matrix, fixed, loaded = self.model.solver.matrix, self._fixed_dofs, self.control.is_loaded
-        stiffness = self.model.soil.stiffness(trial.soil.tangent)
+        self.model.soil.stiffness(trial.soil.tangent)  # fills the solver's matrix
         interface = self.model.interface.stiffness(trial.interface.tangent)
         matrix.add_blocks(interface.dofs, interface.soil)
         motions = self._frame[:, loaded]
@@ -278,7 +236,7 @@ class LoadStep:
         )
         pile_force = lacking - pile_soil @ soil_jump
         soil_force[fixed], soil_pile[fixed], pile_soil[:, fixed] = 0.0, 0.0, 0.0
-        matrix.fix(fixed, diagonal=_mean_diagonal(stiffness))
+        matrix.fix(fixed, diagonal=matrix.mean_diagonal())
         scale = self._pile_scale[loaded]
         return CoupledSystem(
             soil_pile=soil_pile,
@@ -303,9 +261,3 @@ class LoadStep:
         reaction = np.where(self.model.is_fixed, trial.soil_residual, 0.0)
         viscous = self._viscous_share(trial)
         return Step(state, trial.unknowns, trial.pile_force, reaction, residuals, viscous)
-
-
-def _mean_diagonal(matrix: object) -> float:
-    """Return the mean of the matrix's diagonal, a neutral size for rows that are taken out."""
-    diagonal = matrix.getDiagonal()  # type: ignore[attr-defined]
-    return float(diagonal.sum() / diagonal.getSize())

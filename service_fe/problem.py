@@ -31,10 +31,11 @@ from service_fe.coupled_solver import make_solver
 from service_fe.inclusion import Inclusion, interface_parameters, open_pattern
 from service_fe.interface_forms import InterfaceForms, flat_normals
 from service_fe.kinematics import soil_forms
-from service_fe.load_step import LoadStep, Model, Step, Unknowns
+from service_fe.load_step import LoadStep, Model
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
 from service_fe.rigid_pile import PileControl, axial, held
+from service_fe.step import Step, Unknowns
 
 RELEASED = 1e-9
 """Tolerance of the steps that release the out-of-balance force of a hand-over, if not smaller."""

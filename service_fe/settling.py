@@ -18,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 
 from handoff.fe_state_file import FEState
-from service_fe.load_step import Step, Unknowns
 from service_fe.newton import StepNotConvergedError
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import PileControl
+from service_fe.step import Step, Unknowns
 
 LESS = 0.25
 """Change of the damping after a part that converged; after one that did not it is the inverse."""

@@ -14,7 +14,6 @@ from handoff.fe_state_file import FEIntegrationPoints, FEInterfacePoints, FEStat
 from install_mpm.newton import convergence_order
 from service_fe.along_pile import Recorder
 from service_fe.coupled_solver import Work
-from service_fe.load_step import Step, Unknowns
 from service_fe.loading import (
     END_OF,
     EQUILIBRATED,
@@ -30,6 +29,7 @@ from service_fe.options import Programme
 from service_fe.problem import ServiceProblem
 from service_fe.results import Curve, Displacement, ModelName, ProgrammeResult, ServiceResult
 from service_fe.settling import Settled, settle
+from service_fe.step import Step, Unknowns
 
 
 class ServiceError(RuntimeError):

@@ -11,11 +11,12 @@ from install_mpm.ground import Ground
 from install_mpm.newton import convergence_order
 from service_fe.axisymmetric_forms import AxisymmetricForms
 from service_fe.interface_forms import InterfaceForms
-from service_fe.load_step import LoadStep, Unknowns
+from service_fe.load_step import LoadStep
 from service_fe.options import Release
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import PileControl, held, moved
 from service_fe.solve import run_programme
+from service_fe.step import Unknowns
 
 pytestmark = pytest.mark.dolfinx
 

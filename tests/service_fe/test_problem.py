@@ -9,11 +9,12 @@ from install_mpm.constitutive.elastic import elastic_stress, pack
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic
 from install_mpm.ground import Ground
 from install_mpm.newton import convergence_order
-from service_fe.load_step import LoadStep, Unknowns
+from service_fe.load_step import LoadStep
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import PileControl, held, loaded, moved
+from service_fe.step import Unknowns
 
 pytestmark = pytest.mark.dolfinx
 

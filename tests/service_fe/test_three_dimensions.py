@@ -208,7 +208,8 @@ def test_rigid_motion_of_soil_and_pile_together_strains_no_interface(pile_mesh):
 @pytest.mark.parametrize("is_loaded", [(0,) * 6, (0, 0, 1, 0, 0, 1), (1,) * 6])
 def test_tangent_of_the_complete_model_against_finite_differences(problem, undisturbed, is_loaded):
     """With new factors, so that the direction is exact."""
-    from service_fe.load_step import LoadStep, Unknowns
+    from service_fe.load_step import LoadStep
+    from service_fe.step import Unknowns
 
     pushed = problem.solve(undisturbed, moved(0.01, 3)).state
     motion = np.array([1e-3, -2e-3, 1e-3, 1e-3, 2e-3, -1e-3])

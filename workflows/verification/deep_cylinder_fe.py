@@ -11,10 +11,10 @@ from handoff.fe_mesh import FacetTag, FEMesh
 from install_mpm.constitutive.parameters import CoulombInterface, VonMises
 from install_mpm.conventions import Unit
 from install_mpm.ground import Ground
-from service_fe.load_step import Step
 from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import PileControl
+from service_fe.step import Step
 from workflows.verification.deep_cylinder import (
     FLAT,
     ROUND_OFF,

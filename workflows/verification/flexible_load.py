@@ -14,9 +14,9 @@ from handoff.fe_mesh import FacetTag
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic
 from install_mpm.conventions import Kinematics, Unit
 from install_mpm.ground import Ground
-from service_fe.load_step import Step
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held
+from service_fe.step import Step
 from workflows.verification.problem import Outcome, Problem, Series, relative
 from workflows.verification.references.discs import circular_load_settlement, circular_load_stress
 from workflows.verification.revolution import half_space_mesh, pressure_force

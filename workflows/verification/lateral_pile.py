@@ -14,9 +14,9 @@ import numpy as np
 from handoff.fe_mesh import FEMesh
 from install_mpm.constitutive.parameters import CoulombInterface, HenckyElastic
 from install_mpm.conventions import Kinematics, Unit
-from service_fe.load_step import Step
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held
+from service_fe.step import Step
 from workflows.verification.elastic_pile import ground_and_pile, with_pile
 from workflows.verification.problem import Outcome, Problem, relative
 from workflows.verification.references.piles import lateral_head

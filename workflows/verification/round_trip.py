@@ -21,10 +21,10 @@ from handoff.transfer import transfer_least_squares
 from install_mpm.constitutive.parameters import CoulombInterface, Tresca
 from install_mpm.conventions import Unit
 from install_mpm.ground import Ground
-from service_fe.load_step import Step
 from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem, roller_supports
 from service_fe.rigid_pile import held
+from service_fe.step import Step
 from workflows.verification.body import ProblemNotSolvedError
 from workflows.verification.problem import Outcome, Problem, Series, relative
 from workflows.verification.strip_footing_fe import EXACT, footing_mesh

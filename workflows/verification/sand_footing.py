@@ -23,11 +23,11 @@ from handoff.geostatic import elastic_strain_of
 from install_mpm.constitutive.parameters import CoulombInterface, MohrCoulomb
 from install_mpm.conventions import Kinematics
 from install_mpm.ground import Ground
-from service_fe.load_step import Step, Unknowns
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem
 from service_fe.rigid_pile import held
+from service_fe.step import Step, Unknowns
 from workflows.verification.circular_footing import footing_supports
 from workflows.verification.footing_curve import FootingCurve
 from workflows.verification.strip_footing_fe import footing_mesh

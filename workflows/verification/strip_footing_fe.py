@@ -20,10 +20,10 @@ from install_mpm.constitutive.parameters import CoulombInterface, Tresca, VonMis
 from install_mpm.conventions import Unit
 from install_mpm.ground import Ground
 from install_mpm.newton import ROUND_OFF
-from service_fe.load_step import Step
 from service_fe.options import ServiceNumerics
 from service_fe.problem import ServiceProblem, roller_supports
 from service_fe.rigid_pile import held
+from service_fe.step import Step
 from workflows.verification.footing_curve import (
     FootingCurve,
     curve_on_finest_mesh,
