@@ -34,8 +34,9 @@ from service_fe.partition import ALONE, Partition
 FACTORISATION_COST = 24
 """Iterations of GMRES that a factorisation counts as, on meshes of up to ``COST_UNKNOWNS``.
 
-It was measured in space with 13,000 unknowns. With 96,000 and factors of low rank it takes as long
-as 44 (docs/performance.md), so it is taken to grow with the cube root of their number.
+It was measured in space with 13,000 unknowns, and is taken to grow with the root of their number:
+with 96,000 that is 61, while a factorisation of low rank takes as long as 44, but to count it as
+that made a programme slower (docs/performance.md).
 """
 COST_UNKNOWNS = 15_000
 USUAL_REUSE = 40
@@ -121,7 +122,7 @@ class CoupledSolver:
         self.matrix, self.work, self._partition = matrix, Work(), partition
         self._multigrid, self._factors = multigrid, LUFactors(matrix, dropped)
         self._max_reuse = max_reuse
-        growth = np.cbrt(len(matrix.row_of_dof) / COST_UNKNOWNS)
+        growth = np.sqrt(len(matrix.row_of_dof) / COST_UNKNOWNS)
         self._factorisation_cost = FACTORISATION_COST * max(1.0, growth)
         self._border: _Border | None = None
         self._iterations_since: list[int] = []
