@@ -66,7 +66,8 @@ class Curve(NamedTuple):
     ]
     krylov_iterations: Annotated[np.ndarray, _per_step("", "iterations of GMRES", "int64")]
     fallbacks: Annotated[
-        np.ndarray, _per_step("", "times multigrid failed and MUMPS took over", "int64")
+        np.ndarray,
+        _per_step("", "times an approximate inverse failed and exact factors took over", "int64"),
     ]
     residual_history: Annotated[
         np.ndarray,

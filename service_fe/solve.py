@@ -184,9 +184,7 @@ def advance(
 ) -> Advance:
     """Return a whole step, settled or halved as often as needed.
 
-    ``guess`` may be the step before.
-
-    After a success the next part is twice as long again.
+    ``guess`` may be the step before.  After a success the next part is twice as long again.
 
     Raises
     ------

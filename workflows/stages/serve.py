@@ -90,10 +90,10 @@ def viscous_notes(result: ServiceResult) -> list[str]:
 
 
 def fallback_notes(result: ServiceResult) -> list[str]:
-    """Return a line for each programme in which multigrid failed."""
+    """Return a line for each programme in which multigrid or factors of low rank failed."""
     counts = {entry.programme.name: int(entry.curve.fallbacks.sum()) for entry in result.programmes}
     return [
-        f"{name}: multigrid failed {count} times, and MUMPS took over"
+        f"{name}: an approximate inverse failed {count} times, and exact factors took over"
         for name, count in counts.items()
         if count
     ]
