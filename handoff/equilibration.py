@@ -1,12 +1,14 @@
-"""Equilibration: the out-of-balance force of the transferred state is released in ramps, pile held.
+"""Equilibration: the out-of-balance force of the transferred state is released in ramps.
 
 The transferred stresses balance gravity only up to the error of the transfer,
 
     r_0 = f_ext - f_int(state_0) .
 
 The residual force is kept on the model as an artificial load and removed in ramps, r = (1 - lambda)
-r_0 with lambda from 0 to 1, while the pile is held and the soil deforms elastoplastically.
-Displacements are then set to zero; stress, state and interface traction are kept.
+r_0 with lambda from 0 to 1, while the soil deforms elastoplastically.  A pile in the rig's grip
+stays in its place.  One that the rig has let go of carries a known load, so it is free to move, and
+what the soil does to it goes to that load in the same ramps.  Displacements are then set to zero;
+stress, state and interface traction are kept.
 """
 
 from __future__ import annotations
@@ -32,6 +34,8 @@ class ReleasedState(NamedTuple):
     state: FEState
     displacement: np.ndarray
     """Displacement (node, dim) in m of this release alone."""
+    pile_displacement: np.ndarray
+    """Displacement (n_i, dim) in m of the pile beside the interface points in it."""
     iterations: int
     """Newton iterations."""
 
@@ -88,10 +92,14 @@ class EquilibriumProblem(Protocol):
         f_ext is gravity, f_int comes from the soil's stress and the interface's traction.
         """
 
-    def release(self, state: FEState, share: float) -> ReleasedState:
-        """Return the state when ``share`` (0 to 1] of the out-of-balance force has gone, pile held.
+    def release(
+        self, state: FEState, share: float, on_pile: np.ndarray | None = None
+    ) -> ReleasedState:
+        """Return the state when ``share`` (0 to 1] of the out-of-balance force has gone.
 
-        Solves f_int(new) = f_ext - (1 - share) (f_ext - f_int(state)), elastoplastically.
+        Solves f_int(new) = f_ext - (1 - share) (f_ext - f_int(state)), elastoplastically.  The pile
+        is held, or moves so that force and moment of the soil on it, (n_motions,) in N and N m,
+        have gone by the same share to ``on_pile``.
 
         Raises
         ------
@@ -111,16 +119,22 @@ class EquilibrationReport(NamedTuple):
     """Norm of the stress change over the norm of the stress (L2 over the soil)."""
     largest_displacement: float
     """Largest nodal displacement in m."""
+    pile_displacement: float
+    """Largest displacement in m of the surface of the pile."""
     iterations: tuple[int, ...]
     """Newton iterations of each ramp."""
 
 
 def equilibrate(
-    problem: EquilibriumProblem, state: FEState, options: HandoffOptions
+    problem: EquilibriumProblem,
+    state: FEState,
+    options: HandoffOptions,
+    on_pile: np.ndarray | None = None,
 ) -> tuple[FEState, EquilibrationReport]:
     """Return the state in equilibrium with gravity, and what that changed.
 
-    A state that balances gravity to ``max_out_of_balance`` already is returned as it is.
+    ``on_pile`` is what the soil does to a pile that is free to move, see ``release``; by default it
+    is held, and a state that balances gravity to ``max_out_of_balance`` is returned as it is.
 
     Raises
     ------
@@ -129,9 +143,9 @@ def equilibrate(
         exceeds ``max_out_of_balance``.
     """
     before = problem.out_of_balance(state)
-    if before <= options.max_out_of_balance:
-        return state, EquilibrationReport(before, before, 0.0, 0.0, ())
-    balanced, displacement, iterations = _released(problem, state, options.equilibration_steps)
+    if on_pile is None and before <= options.max_out_of_balance:
+        return state, EquilibrationReport(before, before, 0.0, 0.0, 0.0, ())
+    balanced, moved, iterations = _released(problem, state, options.equilibration_steps, on_pile)
     after = problem.out_of_balance(balanced)
     if not after <= options.max_out_of_balance:
         raise EquilibrationError(
@@ -143,23 +157,31 @@ def equilibrate(
         out_of_balance_before=before,
         out_of_balance_after=after,
         stress_change=_stress_change(problem.integration_volumes, state, balanced),
-        largest_displacement=float(np.linalg.norm(displacement, axis=1).max()),
+        largest_displacement=_largest(moved.soil),
+        pile_displacement=_largest(moved.pile),
         iterations=iterations,
     )
     return balanced._replace(pile_displacement=np.zeros_like(state.pile_displacement)), report
 
 
+class _Moved(NamedTuple):
+    """Displacements in m since the transfer, of nodes (node, dim) and of the pile (n_i, dim)."""
+
+    soil: np.ndarray
+    pile: np.ndarray
+
+
 def _released(
-    problem: EquilibriumProblem, state: FEState, n_ramps: int
-) -> tuple[FEState, np.ndarray, tuple[int, ...]]:
-    """Return the state with nothing left out of balance, the displacement and the iterations."""
+    problem: EquilibriumProblem, state: FEState, n_ramps: int, on_pile: np.ndarray | None
+) -> tuple[FEState, _Moved, tuple[int, ...]]:
+    """Return the state with nothing left out of balance, the displacements and the iterations."""
     lifted, ramp = 0.0, 1.0 / n_ramps
-    displacement: np.ndarray | float = 0.0
+    moved = _Moved(np.zeros(1), np.zeros(1))
     iterations: list[int] = []
     while lifted < 1.0:
         target = lifted + ramp if lifted + 1.001 * ramp < 1.0 else 1.0
         try:
-            step = problem.release(state, (target - lifted) / (1.0 - lifted))
+            step = problem.release(state, (target - lifted) / (1.0 - lifted), on_pile)
         except EquilibrationError as error:
             ramp *= 0.5
             if ramp * n_ramps < 0.5**HALVINGS:
@@ -170,9 +192,14 @@ def _released(
                 ) from error
             continue
         state, lifted = step.state, target
-        displacement = displacement + step.displacement
+        moved = _Moved(moved.soil + step.displacement, moved.pile + step.pile_displacement)
         iterations.append(step.iterations)
-    return state, np.asarray(displacement), tuple(iterations)
+    return state, moved, tuple(iterations)
+
+
+def _largest(displacement: np.ndarray) -> float:
+    """Return the largest length in m of displacements (n, dim)."""
+    return float(np.linalg.norm(displacement, axis=-1).max(initial=0.0))
 
 
 def _stress_change(volumes: np.ndarray, before: FEState, after: FEState) -> float:

@@ -72,7 +72,7 @@ def hand_over(
     transferred, corrections = admissible_state(ground, interface, places, share, raw)
 
     observe("equilibration")
-    balanced, report = equilibrate(problem, transferred, options)
+    balanced, report = equilibrate(problem, transferred, options, placed.carried(installed))
 
     observe("certificate")
     evidence = Evidence(

@@ -31,6 +31,9 @@ class HandoffOptions:
     """Ramps in which the out-of-balance force of the transferred state is released."""
     max_synthetic_error: Share = 0.05
     max_out_of_balance: Annotated[float, Gt(0)] = 1e-8
-    max_reaction_change: Share = 0.05
+    max_reaction_change: Share = 0.03
+    """Resultant on the pile against that in material points, over the sum of the parts."""
+    max_pile_displacement: Share = 1e-3
+    """Over the width of the pile, in the equilibration: a hundredth of where capacity is read."""
     max_relaxation: Share = 0.05
     """Change of the mean pressure within one pile width in the equilibration."""

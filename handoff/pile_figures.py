@@ -47,19 +47,20 @@ def reaction_figures(
         for number, name in enumerate(names)
         if parts["transferred"][number].any()
     }
-    before = whole * np.asarray(installed.pile.reaction)
-    after = parts["equilibrated"].sum(axis=0)
-    what = "upward soil reaction on the pile"
+    total = {stage: of_part.sum(axis=0) for stage, of_part in parts.items()}
+    total["mpm"] = whole * np.asarray(installed.pile.reaction)
     figures |= {
-        "pile_reaction_mpm": Figure(float(before[-1]), "N", f"{what}: mpm"),
-        "pile_reaction_equilibrated": Figure(float(after[-1]), "N", f"{what}: equilibrated"),
+        f"pile_reaction_{stage}": Figure(
+            float(force[-1]), "N", f"upward soil reaction on the pile: {stage}"
+        )
+        for stage, force in total.items()
     }
     compared = slice(0 if dimension(placed.kinematics) == 3 else -1, None)  # of a half: vertical
-    figures["pile_reaction_change"] = Figure(
-        _change(after[compared], before[compared], parts["mpm"][:, compared]),
-        "",
-        "pile reaction, finite elements against material points, over the sum of the parts",
-        options.max_reaction_change,
+    figures |= _change_figures(
+        "reaction",
+        {stage: force[compared] for stage, force in total.items()},
+        parts["mpm"][:, compared],
+        options,
     )
     if dimension(placed.kinematics) == 3:
         figures |= _moment_figures(forces, places, installed.interface.part, options)
@@ -98,13 +99,24 @@ def _moment_figures(
         )
         for stage, moment in total.items()
     }
-    figures["pile_moment_change"] = Figure(
-        _change(total["equilibrated"], total["mpm"], scale),
-        "",
-        "moment on the pile, finite elements against material points, over the sum of the parts",
-        options.max_reaction_change,
-    )
-    return figures
+    return figures | _change_figures("moment", total, scale, options)
+
+
+def _change_figures(
+    what: str, total: dict[str, np.ndarray], parts: np.ndarray, options: HandoffOptions
+) -> dict[str, Figure]:
+    """Return how far a resultant on the pile is from that in material points, at last and before.
+
+    It is measured by the sum of the magnitudes of the ``parts`` (n, dim) of the latter.
+    """
+    meaning = f"{what} of the soil on the pile, finite elements against material points"
+    before, after = (_change(total[stage], total["mpm"], parts) for stage in STAGES[1:])
+    return {
+        f"pile_{what}_change": Figure(
+            after, "", f"{meaning}, over the sum of the parts", options.max_reaction_change
+        ),
+        f"pile_{what}_change_transferred": Figure(before, "", f"the same: {STAGES[1]}"),
+    }
 
 
 def _change(after: np.ndarray, before: np.ndarray, parts: np.ndarray) -> float:

@@ -24,6 +24,7 @@ from handoff.synthetic import airy_stress, distance_to_pile, rim_stress
 from install_mpm.conventions import Kinematics, rotation_matrix
 from install_mpm.exact_patches import strength_shares
 from install_mpm.ground import GroundProfile
+from install_mpm.interface import force_on_pile
 from install_mpm.options import Box
 from install_mpm.pile import Pile, PilePart, buried_weight, surface_normals
 from install_mpm.screw_history import driven
@@ -93,6 +94,12 @@ class PlacedPile(Protocol):
 
     def rebound(self, installed: InstalledState) -> tuple[float, float]:
         """Return by how much (m, rad) the pile rose and turned while the rig let go of it."""
+
+    def carried(self, installed: InstalledState) -> np.ndarray | None:
+        """Return what the soil does to a pile that the rig has let go of, or None if it holds it.
+
+        Force and moment (n_motions,) in N and N m about the axis at the ground surface.
+        """
 
     def weight(self, water_table: float | None) -> float:
         """Return the weight in N of the modelled part of the pile below the ground surface."""
@@ -167,6 +174,9 @@ class PlacedFlatPile:
     def rebound(self, installed: InstalledState) -> tuple[float, float]:
         """Return zero: the rig still holds the pile."""
         return 0.0, 0.0
+
+    def carried(self, installed: InstalledState) -> None:
+        """Return None: the rig still holds the pile."""
 
     def weight(self, water_table: float | None) -> float:
         """Return the weight of half of the wall, or of the round pile."""
@@ -265,6 +275,15 @@ class PlacedScrewPile:
             return 0.0, 0.0
         rise = history.penetration[-1] - installed.pile.penetration
         return float(rise), float(installed.pile.rotation - history.rotation[-1])
+
+    def carried(self, installed: InstalledState) -> np.ndarray | None:
+        """Return force and moment of the soil on the pile if the release has come to its end."""
+        share = installed.history.release_share
+        if not len(share) or share[-1] < 1.0:
+            return None
+        force = force_on_pile(installed.interface)
+        moment = np.cross(installed.interface.position, force)
+        return np.concatenate([force.sum(axis=0), moment.sum(axis=0)])
 
     def weight(self, water_table: float | None) -> float:
         """Return the weight of the pile below the surface; under water it is that of the case."""

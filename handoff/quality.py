@@ -186,6 +186,12 @@ def _equilibrium_figures(evidence: Evidence) -> dict[str, Figure]:
         "equilibration_displacement": Figure(
             report.largest_displacement, "m", "largest nodal displacement in the equilibration"
         ),
+        "pile_displacement": Figure(
+            report.pile_displacement / evidence.placed.width,
+            "",
+            "largest displacement of the pile in the equilibration over its width",
+            evidence.options.max_pile_displacement,
+        ),
     }
 
 

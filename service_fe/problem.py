@@ -19,12 +19,7 @@ from handoff.tensor_arrays import six_vectors
 from install_mpm.constitutive import dispatch
 from install_mpm.constitutive.parameters import CoulombInterface
 from install_mpm.conventions import Kinematics
-from install_mpm.ground import (
-    GroundProfile,
-    soils_of,
-    undrained_shear_strength,
-    unit_weights,
-)
+from install_mpm.ground import GroundProfile, soils_of, undrained_shear_strength, unit_weights
 from install_mpm.interface import with_strength_share
 from install_mpm.pile import WHOLE_PILE
 from service_fe.coupled_solver import make_solver
@@ -34,7 +29,7 @@ from service_fe.kinematics import soil_forms
 from service_fe.load_step import LoadStep, Model
 from service_fe.newton import StepNotConvergedError
 from service_fe.options import ServiceNumerics
-from service_fe.rigid_pile import PileControl, axial, held
+from service_fe.rigid_pile import PileControl, axial, held, rigid_motion
 from service_fe.step import Step, Unknowns
 
 RELEASED = 1e-9
@@ -229,8 +224,13 @@ class ServiceProblem:
         residual = self.gravity(state) - self.internal_force(state)
         return float(np.linalg.norm(residual[~self.model.is_fixed]) / weight)
 
-    def release(self, state: FEState, share: float) -> ReleasedState:
-        """Return the state when ``share`` (0 to 1] of the out-of-balance force has gone, pile held.
+    def release(
+        self, state: FEState, share: float, on_pile: np.ndarray | None = None
+    ) -> ReleasedState:
+        """Return the state when ``share`` (0 to 1] of the out-of-balance force has gone.
+
+        The pile is held, or loaded so that what the soil does to it, (n_motions,) in N and N m,
+        goes by the same share to ``on_pile``.
 
         Raises
         ------
@@ -242,14 +242,24 @@ class ServiceProblem:
         exact = replace(self.numerics, tolerance=min(self.numerics.tolerance, RELEASED))
         model = self.model._replace(numerics=exact)
         still = np.zeros_like(self.mesh.nodes)
+        control = held(self.dim) if on_pile is None else self._carrying(state, share, on_pile)
         try:
-            step = LoadStep(model, state, held(self.dim), still, external).solve(None)
+            step = LoadStep(model, state, control, still, external).solve(None)
         except StepNotConvergedError as error:
             raise EquilibrationError(
                 f"releasing {share:.0%} of the out-of-balance force failed: {error};"
                 " take more equilibration steps"
             ) from error
-        return ReleasedState(step.state, step.increment.displacement, len(step.residuals) - 1)
+        displacement, motion = step.increment
+        of_pile = rigid_motion(self.interface_positions) @ motion
+        return ReleasedState(step.state, displacement, of_pile, len(step.residuals) - 1)
+
+    def _carrying(self, state: FEState, share: float, on_pile: np.ndarray) -> PileControl:
+        """Return the loads that take what the soil does to the pile by ``share`` to ``on_pile``."""
+        now = self.pile_load(state)
+        wanted = -on_pile - self.model.pile_weight
+        every = np.ones(len(on_pile), dtype=bool)
+        return PileControl(every, np.zeros(len(on_pile)), now + share * (wanted - now))
 
     def solve(
         self,

@@ -38,8 +38,11 @@ class TwoBars:
     def out_of_balance(self, state: FEState) -> float:
         return abs(self.residual(state)) / self.load
 
-    def release(self, state: FEState, share: float) -> ReleasedState:
+    def release(
+        self, state: FEState, share: float, on_pile: np.ndarray | None = None
+    ) -> ReleasedState:
         self.shares.append(share)
+        self.on_pile = on_pile
         if share * abs(self.residual(state)) > self.largest_force:
             raise EquilibrationError("step too large")
         target = self.load - (1.0 - share) * self.residual(state) - self.leftover
@@ -55,6 +58,7 @@ class TwoBars:
         return ReleasedState(
             state._replace(cauchy_stress=new, pile_displacement=np.array([0.0, 1e-9])),
             np.array([[0.0, stretch], [0.0, 0.0]]),
+            np.array([[0.0, 0.5 * stretch]]),
             iterations,
         )
 
@@ -79,6 +83,7 @@ def test_elastic_bars_share_what_was_missing():
     assert report.out_of_balance_before == pytest.approx(0.4)
     assert report.out_of_balance_after < 1e-12
     assert report.largest_displacement == pytest.approx(2.0 / 1000.0)
+    assert report.pile_displacement == pytest.approx(1.0 / 1000.0)
     assert report.stress_change == pytest.approx(np.sqrt(8.0 / 20.0))
     assert len(report.iterations) == 4
 
@@ -105,7 +110,15 @@ def test_a_balanced_state_is_returned_unmoved():
     balanced, report = equilibrate(problem, state, OPTIONS)
     assert balanced is state
     assert problem.shares == []
-    assert report.largest_displacement == report.stress_change == 0.0
+    assert report.largest_displacement == report.stress_change == report.pile_displacement == 0.0
+
+
+def test_a_pile_that_carries_a_known_load_is_equilibrated_even_if_the_soil_is_balanced():
+    problem, load = TwoBars(), np.array([0.0, 5.0, 0.0])
+    state, report = equilibrate(problem, bars(3.0, 7.0), OPTIONS, load)
+    assert problem.on_pile is load
+    assert len(report.iterations) == 4
+    assert state.cauchy_stress[:, 1, 1] == pytest.approx([3.0, 7.0])
 
 
 def test_a_ramp_that_fails_is_halved():

@@ -61,17 +61,50 @@ def make_problem():
     return make
 
 
-def test_rebound_is_the_motion_since_the_rig_let_go(undisturbed):
-    assert PLACED.rebound(undisturbed) == (0.0, 0.0)
+def released(undisturbed, last_share=1.0):
+    """The same ground around a pile that the rig has let go of, or is letting go of."""
     fields = dict.fromkeys(ScrewHistory._fields, np.zeros(4))
     fields |= {
         "penetration": np.array([0.0, 0.30, 0.298, 0.294]),
         "rotation": np.array([0.0, -5.0, -4.998, -4.99]),
-        "release_share": np.array([0.0, 0.0, 0.5, 1.0]),
+        "release_share": np.array([0.0, 0.0, 0.5, last_share]),
     }
     pile = undisturbed.pile._replace(penetration=np.array(0.294), rotation=np.array(-4.99))
-    released = undisturbed._replace(history=ScrewHistory(**fields), pile=pile)
-    assert PLACED.rebound(released) == pytest.approx((6e-3, 0.01))
+    return undisturbed._replace(history=ScrewHistory(**fields), pile=pile)
+
+
+def test_rebound_is_the_motion_since_the_rig_let_go(undisturbed):
+    assert PLACED.rebound(undisturbed) == (0.0, 0.0)
+    assert PLACED.rebound(released(undisturbed)) == pytest.approx((6e-3, 0.01))
+
+
+def test_only_a_pile_that_the_rig_has_let_go_of_is_free(undisturbed):
+    assert PLACED.carried(undisturbed) is None
+    assert PLACED.carried(released(undisturbed, last_share=0.75)) is None
+    carried = PLACED.carried(released(undisturbed))
+    expected = resultant(undisturbed.interface.position, force_on_pile(undisturbed.interface))
+    np.testing.assert_allclose(carried, np.ravel(expected), rtol=1e-12)
+
+
+@pytest.mark.dolfinx
+@pytest.mark.gmsh
+def test_a_released_pile_carries_its_load_when_handed_over(undisturbed, make_problem):
+    """What was pushed down is pushed down after: force and moment, in a certificate that holds."""
+    before = undisturbed.interface
+    pushed = before._replace(traction=before.traction * [1.0, 1.0, 1.05])
+    state = released(undisturbed)._replace(interface=pushed)
+    state = state._replace(pile=undisturbed.pile._replace(reaction=reaction(pushed)))
+    handed_off, certificate = hand_over(
+        state, GROUND, PLACED, BOX, LAW, OPTIONS, make_problem, lambda phase: None
+    )
+    load = make_problem(handed_off.mesh).pile_load(handed_off.state)
+    carried = PLACED.carried(state)
+    expected = -carried + np.eye(6)[2] * PLACED.weight(None)
+    np.testing.assert_allclose(load, expected, atol=1e-6 * np.abs(carried).max())
+    value = {name: figure.value for name, figure in certificate.figures.items()}
+    assert value["pile_reaction_change"] < 1e-6
+    assert value["pile_moment_change"] < 1e-6
+    assert 0.0 < value["pile_displacement"] < 1e-3
 
 
 def test_linear_field_is_reproduced_and_a_quadratic_one_to_second_order():

@@ -222,6 +222,25 @@ def test_half_release_halves_what_is_out_of_balance(pile_problem, undisturbed):
     assert pile_problem.out_of_balance(released.state) == pytest.approx(0.5 * before, rel=1e-5)
 
 
+def test_pile_that_the_rig_let_go_of_comes_to_its_load(pile_problem, undisturbed):
+    """The soil's force on it goes to what it carries by the share released, in free motion."""
+    before = pile_problem.pile_load(undisturbed)
+    change = np.array([300.0, 4000.0, 150.0])
+    weight = pile_problem.model.pile_weight
+    wanted = -(before + weight + change)
+    half = pile_problem.release(undisturbed, 0.5, wanted)
+    scale = np.abs(wanted).max()
+    load = pile_problem.pile_load(half.state)
+    np.testing.assert_allclose(load, before + 0.5 * change, atol=1e-8 * scale)
+    rest = pile_problem.release(half.state, 1.0, wanted)
+    load = pile_problem.pile_load(rest.state)
+    np.testing.assert_allclose(load, before + change, atol=1e-8 * scale)
+    lifted = rest.pile_displacement
+    assert lifted.shape == pile_problem.interface_positions.shape
+    assert np.all(lifted[:, 1] > 0.0)
+    assert pile_problem.out_of_balance(rest.state) < 1e-8
+
+
 def test_failed_release_raises_the_error_of_the_hand_over(make_pile_problem, undisturbed):
     problem = make_pile_problem(ServiceNumerics(max_iterations=3))
     upside_down = undisturbed._replace(
