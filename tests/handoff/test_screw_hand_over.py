@@ -195,8 +195,8 @@ def test_force_and_moment_of_every_part_are_kept(undisturbed, make_problem):
 @pytest.mark.dolfinx
 @pytest.mark.gmsh
 def test_pile_that_was_not_installed_is_the_pile_wished_in_place(undisturbed, make_problem):
-    """Certificate passed without equilibration, and the same curves to 1e-6."""
-    from service_fe.options import Displace, Lateral, Release
+    """Certificate passed without equilibration, and the same curves to 1e-6 in every programme."""
+    from service_fe.options import Cycles, Displace, Lateral, Load, Release, Resume, Rotate
     from service_fe.solve import run
 
     handed_off, certificate = hand_over(
@@ -213,7 +213,14 @@ def test_pile_that_was_not_installed_is_the_pile_wished_in_place(undisturbed, ma
     programmes = (
         Release(steps=1),
         Displace("compression", 0.02, 0.02, first_step_halvings=0),
+        Displace("uplift", -0.01, 0.01, first_step_halvings=0),
         Lateral("lateral", 0.02, 0.02, height=0.5, first_step_halvings=0),
+        Rotate("torsion", 0.01, 0.01, first_step_halvings=0),
+        Rotate("moment", 0.005, 0.005, about="horizontal", first_step_halvings=0),
+        Load("combined", vertical=20e3, lateral=2e3, torque=1e3, height=0.5, steps=1),
+        Cycles("cycles", "lateral", amplitude=2e3, cycles=1, steps=1),
+        Resume(steps=1),
+        Rotate("on", -0.01, 0.01, advance=2e-3, start="resumed", first_step_halvings=0),
     )
     wished = run(problem, wished_in_place(GROUND, LAW, problem, OPTIONS), programmes)
     installed = run(problem, handed_off.state, programmes)
