@@ -5,17 +5,20 @@ from __future__ import annotations
 import numpy as np
 
 from handoff.equilibration import EquilibriumProblem
-from handoff.fe_state_file import FEState
+from handoff.fe_state_file import FEInterfacePoints, FEState
 from handoff.figure import Figure, relative_difference
 from handoff.interface_transfer import forces_on_pile, part_forces
 from handoff.options import HandoffOptions
 from handoff.placed_pile import PlacedPile
+from handoff.shaft_profile import profile_differences, shaft_profiles
 from install_mpm.conventions import dimension
 from install_mpm.interface import force_on_pile
 from install_mpm.pile import WHOLE_PILE
 from install_mpm.state_file import InstalledState
 
 STAGES = ("mpm", "transferred", "equilibrated")
+MAX_PRESSURE_DIFFERENCE = 0.1
+"""Of the contact pressure along the shaft, relative."""
 
 
 def reaction_figures(
@@ -64,7 +67,34 @@ def reaction_figures(
     )
     if dimension(placed.kinematics) == 3:
         figures |= _moment_figures(forces, places, installed.interface.part, options)
+        figures |= _shaft_figures(installed, names.index("shaft"), problem, states[1], options)
     return figures
+
+
+def _shaft_figures(
+    installed: InstalledState,
+    shaft: int,
+    problem: EquilibriumProblem,
+    balanced: FEState,
+    options: HandoffOptions,
+) -> dict[str, Figure]:
+    """Return how far contact pressure and shear along the shaft are from the installation's."""
+    places = FEInterfacePoints(
+        problem.interface_positions,
+        problem.interface_normals,
+        problem.interface_areas,
+        problem.interface_parts,
+    )
+    traction, size = balanced.interface_traction, 2.0 * options.size_at_pile
+    profiles = shaft_profiles(installed.interface, places, traction, shaft, size)
+    pressure, shear = profile_differences(profiles)
+    what = "along the shaft, means around it, finite elements against material points, relative L2"
+    return {
+        "shaft_pressure_difference": Figure(
+            pressure, "", f"contact pressure {what}", MAX_PRESSURE_DIFFERENCE
+        ),
+        "shaft_shear_difference": Figure(shear, "", f"shear {what}"),
+    }
 
 
 def _point_forces(

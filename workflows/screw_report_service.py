@@ -39,6 +39,7 @@ from workflows.screw_cycles import cycles_picture, cycles_plot, cyclic_programme
 from workflows.screw_frames import PointCloud
 from workflows.screw_report_ground import pose_of
 from workflows.screw_report_text import SERVICE_CAPTIONS, SERVICE_LIMITS
+from workflows.screw_shaft import shaft_tractions
 from workflows.screw_slices import (
     draw_slice,
     mean_pressure_change,
@@ -122,10 +123,11 @@ def captioned(name: str, picture: Figure) -> str:
 
 
 def handoff_html(case: ScrewCase, installed: InstalledState, files: ServiceFiles) -> str:
-    """Return the stress handed over, and the certificate."""
+    """Return the stress and the tractions handed over, and the certificate."""
     return "\n".join(
         [
             captioned("handed_off", stress_picture(case, installed, files)),
+            captioned("shaft", shaft_tractions(case, installed, files.handed_off)),
             "<h3>Certificate</h3>",
             certificate_table(files.certificate, SPACE, with_limit=True),
             details(
