@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from service_fe.options import Lateral
 from service_fe.results import AlongPile, ProgrammeResult, ServiceResult
-from workflows.report_style import MODEL_COLOURS, MODEL_NAMES, grid, panels
+from workflows.report_style import INK, MODEL_COLOURS, MODEL_NAMES, grid, panels
 
 N_DEPTHS = 4
 """Levels whose p-y curves are shown."""
@@ -52,14 +52,15 @@ def along_pile(service: ServiceResult, wished: ServiceResult, name: str) -> Figu
             values = factor * in_direction(entry, field)[-1]
             here.plot(values, along.height, color=colour, label=label)
         if has_py:
-            _draw_py(axes[0, -1], entry, along, colour)
+            _draw_py(axes[0, -1], entry, along, colour, with_depth=model is service)
     for here, (_, _, text) in zip(axes[0], profiles, strict=False):
         here.set(xlabel=text)
         grid(here)
     axes[0, 0].set(ylabel="z (m)")
     axes[0, 0].legend()
     if has_py:
-        axes[0, -1].set(xlabel="y (mm)", ylabel="p (kN/m)", title="p-y curves")
+        axes[0, -1].set(xlabel="y (mm)", ylabel="p (kN/m)", title="p-y curves, by depth")
+        axes[0, -1].margins(x=0.2)
         grid(axes[0, -1])
     return figure
 
@@ -74,13 +75,15 @@ def in_direction(entry: ProgrammeResult, field: str) -> np.ndarray:
     return change
 
 
-def _draw_py(here: Any, entry: ProgrammeResult, along: AlongPile, colour: str) -> None:
-    """Draw the p-y curves of some levels, darker with the depth."""
+def _draw_py(
+    here: Any, entry: ProgrammeResult, along: AlongPile, colour: str, *, with_depth: bool
+) -> None:
+    """Draw the p-y curves of some levels, darker with the depth, which may stand at their ends."""
     levels = np.unique(np.linspace(1, len(along.height) - 1, N_DEPTHS).round().astype(int))[::-1]
     y, p = 1e3 * in_direction(entry, "deflection"), -1e-3 * in_direction(entry, "reaction")
     for number, level in enumerate(levels):
         share = 0.35 + 0.65 * (number + 1) / len(levels)
         here.plot(y[:, level], p[:, level], color=colour, alpha=share)
-        here.annotate(
-            f"{along.height[level]:.2g} m", (y[-1, level], p[-1, level]), fontsize=7, color=colour
-        )
+        if with_depth:
+            depth = f" {abs(along.height[level]):.1f} m"
+            here.annotate(depth, (y[-1, level], p[-1, level]), fontsize=7, color=INK)
