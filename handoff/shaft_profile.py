@@ -1,4 +1,8 @@
-"""Tractions along the shaft of a screw pile in both models: means around it, in bands of depth."""
+"""Tractions along the shaft of a screw pile in both models: means around it, level by level.
+
+A level takes its mean with a weight that falls linearly to zero at the next ones: points of the two
+models lie at different heights, and in bands with sharp ends a ring of points would count or not.
+"""
 
 from __future__ import annotations
 
@@ -11,19 +15,19 @@ from install_mpm.interface import InterfacePoints
 
 AROUND, DOWNWARD, NORMAL = range(3)
 """Components of the traction on the soil at the shaft; the normal one is positive in tension."""
-SPIKE = 0.25
-"""Share of a band that soil must cover; the mean over less tells of single points."""
+LEAST_COVERED = 0.25
+"""Share of a level that soil must cover; the mean over less tells of single points."""
 
 
 class ShaftProfiles(NamedTuple):
-    """Means of the traction on the soil, from the tip upward; bands without soil are left out."""
+    """Means of the traction on the soil, from the tip upward; levels without soil are left out."""
 
     height: np.ndarray
-    """Middle (n_bands,) of each band, z in m."""
+    """z (n_levels,) in m of each level."""
     material_points: np.ndarray
-    """(n_bands, 3) in Pa."""
+    """(n_levels, 3) in Pa."""
     finite_elements: np.ndarray
-    """(n_bands, 3) in Pa."""
+    """(n_levels, 3) in Pa."""
 
 
 def shaft_profiles(
@@ -36,18 +40,17 @@ def shaft_profiles(
     """Return the tractions along the ``shaft``, a number of a part of the pile, in both models.
 
     ``points`` are those of the installation, ``places`` and ``traction`` (n_i, 3) in Pa those of
-    the finite elements.  Bands are about ``size`` high, in m.
+    the finite elements.  Levels are about ``size`` apart, in m.
     """
     here, there = points.part == shaft, places.part == shaft
     height, top = points.position[here, 2], places.position[there, 2]
     low, high = top.min(), top.max()
-    edges = np.linspace(low, high, max(2, round((high - low) / size)) + 1)
+    levels = np.linspace(low, high, max(2, round((high - low) / size)) + 1)
     beside_soil = points.area[here] * points.covered[here]
-    before, covered = _means(height, beside_soil, points.traction[here], edges)
-    after, area = _means(top, places.area[there], traction[there], edges)
-    has_soil = covered > SPIKE * area
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    return ShaftProfiles(middle[has_soil], before[has_soil], after[has_soil])
+    before, covered = _means(height, beside_soil, points.traction[here], levels)
+    after, area = _means(top, places.area[there], traction[there], levels)
+    has_soil = covered > LEAST_COVERED * area
+    return ShaftProfiles(levels[has_soil], before[has_soil], after[has_soil])
 
 
 def profile_differences(profiles: ShaftProfiles) -> tuple[float, float]:
@@ -60,14 +63,13 @@ def profile_differences(profiles: ShaftProfiles) -> tuple[float, float]:
 
 
 def _means(
-    height: np.ndarray, area: np.ndarray, traction: np.ndarray, edges: np.ndarray
+    height: np.ndarray, area: np.ndarray, traction: np.ndarray, levels: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the mean traction (n_bands, 3) and the area (n_bands,) of each band."""
-    n_bands = len(edges) - 1
-    band = np.clip(np.searchsorted(edges, height) - 1, 0, n_bands - 1)
-    total = np.bincount(band, area, n_bands)
-    force = np.stack([np.bincount(band, area * part, n_bands) for part in traction.T], axis=1)
-    return force / np.where(total > 0.0, total, 1.0)[:, None], total
+    """Return the mean traction (n_levels, 3) and the area (n_levels,) of each level."""
+    away = np.abs(height - levels[:, None]) / (levels[1] - levels[0])
+    weights = np.maximum(1.0 - away, 0.0) * area
+    total = weights.sum(axis=1)
+    return weights @ traction / np.where(total > 0.0, total, 1.0)[:, None], total
 
 
 def _difference(values: np.ndarray, expected: np.ndarray) -> float:

@@ -109,7 +109,7 @@ SERVICE_CAPTIONS = {
         through the axis, in the finite elements. Left: the installed state after the hand-over, in
         equilibrium. Right: the pile wished in place, at the end of its last programme. Each pixel
         shows its nearest integration point.""",
-    "shaft": """Traction between shaft and soil, mean around the shaft in bands of depth: as the
+    "shaft": """Traction between shaft and soil, mean around the shaft, level by level: as the
         installation left it, and after the hand-over.""",
     "curves": """Load of the structure on the head against its displacement, for the whole pile:
         the installed pile and the same pile wished in place, in the same programme. Dot: capacity
