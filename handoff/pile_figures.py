@@ -85,7 +85,7 @@ def _shaft_figures(
         problem.interface_areas,
         problem.interface_parts,
     )
-    traction, size = balanced.interface_traction, 2.0 * options.size_at_pile
+    traction, size = balanced.interface_traction, options.size_at_pile
     profiles = shaft_profiles(installed.interface, places, traction, shaft, size)
     pressure, shear = profile_differences(profiles)
     what = "along the shaft, means around it, finite elements against material points, relative L2"

@@ -35,17 +35,18 @@ def shaft_profiles(
     places: FEInterfacePoints,
     traction: np.ndarray,
     shaft: int,
-    size: float,
+    size_at_pile: float,
 ) -> ShaftProfiles:
     """Return the tractions along the ``shaft``, a number of a part of the pile, in both models.
 
     ``points`` are those of the installation, ``places`` and ``traction`` (n_i, 3) in Pa those of
-    the finite elements.  Levels are about ``size`` apart, in m.
+    the finite elements.  Levels are an element of the shaft apart: twice ``size_at_pile``, in m.
     """
     here, there = points.part == shaft, places.part == shaft
     height, top = points.position[here, 2], places.position[there, 2]
     low, high = top.min(), top.max()
-    levels = np.linspace(low, high, max(2, round((high - low) / size)) + 1)
+    n_gaps = max(2, round((high - low) / (2.0 * size_at_pile)))
+    levels = np.linspace(low, high, n_gaps + 1)
     beside_soil = points.area[here] * points.covered[here]
     before, covered = _means(height, beside_soil, points.traction[here], levels)
     after, area = _means(top, places.area[there], traction[there], levels)

@@ -28,7 +28,7 @@ def shaft_tractions(case: ScrewCase, installed: InstalledState, handed_off: Any)
         handed_off.interface,
         handed_off.state.interface_traction,
         part_names(case.pile).index("shaft"),
-        2.0 * case.handoff.size_at_pile,
+        case.handoff.size_at_pile,
     )
     figure, axes = panels(1, len(COMPONENTS), 10.0, 4.0, sharey=True)
     for here, (component, factor, label) in zip(axes[0], COMPONENTS, strict=True):

@@ -49,7 +49,7 @@ def test_linear_tractions_come_out_in_both_models():
     """
     heights = -np.linspace(0.05, 3.95, 40)
     places, traction = handed_over(np.linspace(-4.0, 0.0, 81), 12)
-    profiles = shaft_profiles(installed(heights, 8), places, traction, SHAFT, 1.0)
+    profiles = shaft_profiles(installed(heights, 8), places, traction, SHAFT, 0.5)
     np.testing.assert_allclose(profiles.height, [-4.0, -3.0, -2.0, -1.0, 0.0])
     centre = profiles.height + np.array([1.0, 0.0, 0.0, 0.0, -1.0]) / 3.0
     expected = traction_at(centre[:, None] * [0, 0, 1])
@@ -65,7 +65,7 @@ def test_a_level_that_soil_hardly_covers_is_left_out():
     heights = -np.linspace(0.05, 3.95, 40)
     covered = np.repeat(np.where(heights > -1.0, 0.01, 1.0), 8)
     places, traction = handed_over(np.linspace(-4.0, 0.0, 81), 12)
-    profiles = shaft_profiles(installed(heights, 8, covered), places, traction, SHAFT, 1.0)
+    profiles = shaft_profiles(installed(heights, 8, covered), places, traction, SHAFT, 0.5)
     np.testing.assert_allclose(profiles.height, [-4.0, -3.0, -2.0, -1.0])
 
 
@@ -74,7 +74,7 @@ def test_rings_of_points_at_other_heights_make_no_difference():
     places, traction = handed_over(np.linspace(-4.0, 0.0, 81), 12)
     rings_at = -np.arange(0.2, 4.0, 0.4)
     lower, upper = (
-        shaft_profiles(installed(rings_at + shift, 64), places, traction, SHAFT, 1.0)
+        shaft_profiles(installed(rings_at + shift, 64), places, traction, SHAFT, 0.5)
         for shift in (-0.03, 0.03)
     )
     np.testing.assert_allclose(lower.material_points[1:-1], upper.material_points[1:-1], atol=0.25)
@@ -84,5 +84,5 @@ def test_difference_is_relative_to_the_installation():
     heights = -np.linspace(0.05, 3.95, 40)
     places, traction = handed_over(heights, 8)
     more = traction * [1.5, 1.5, 1.2]
-    profiles = shaft_profiles(installed(heights, 8), places, more, SHAFT, 1.0)
+    profiles = shaft_profiles(installed(heights, 8), places, more, SHAFT, 0.5)
     assert profile_differences(profiles) == (pytest.approx(0.2), pytest.approx(0.5))
